@@ -91,7 +91,8 @@ impl Single {
         table.finish();
         let make = block_factory(entry).unwrap_or_else(|| panic!("{name} is no block"));
         let table = if role == Role::Element { &part.elements } else { &part.conditions };
-        let request = BlockRequest { entry, members: vec![0], table, nodes: &part.nodes, part: &part };
+        let request =
+            BlockRequest { entry, members: vec![0], table, nodes: &part.nodes, part: &part, on_initial: false };
         let mut block = make(&request).unwrap();
         block.initialize(&part.view()).unwrap();
         Self { part, block }

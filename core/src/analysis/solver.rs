@@ -272,6 +272,7 @@ impl SolverSettings {
             explicit: self.definition.explicit,
             linear: !self.definition.explicit
                 && self.settings.node().get("analysis_type").and_then(Node::as_str) == Some("linear"),
+            follower_loads: self.settings.node().get("follower_loads").and_then(Node::as_bool) == Some(true),
             incomplete: !self.is_whole,
             unknown_load_factor: earlier.unknown_load_factor
                 || strategy.is_some_and(|strategy| strategy.unknown_load_factor),

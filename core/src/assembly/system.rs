@@ -30,9 +30,12 @@ impl System {
         let mut report = Report::new();
         let mut both = [Vec::new(), Vec::new()];
         let tables = [(Role::Element, &part.elements), (Role::Condition, &part.conditions)];
+        let still = (!part.info.solver.follower_loads).then(|| NodesOfSmallDisplacement::of(part));
         for (blocks, (role, table)) in both.iter_mut().zip(tables) {
             let is_own = |at: usize| part.evaluates(role, at);
-            for (entry, members) in groups(table, is_own) {
+            let still = still.as_ref().filter(|_| role == Role::Condition);
+            let on_initial = |at: usize| still.is_some_and(|still| still.hold(table.nodes(at as u32)));
+            for Group { entry, on_initial, members } in groups(table, is_own, on_initial) {
                 let Some(make) = block_factory(entry) else {
                     if is_place(entry) {
                         let fact = format!("{} {} has no physics", entry.name, table.ids[members[0] as usize]);
@@ -50,7 +53,7 @@ impl System {
                     );
                     continue;
                 };
-                let request = BlockRequest { entry, members, table, nodes: &part.nodes, part };
+                let request = BlockRequest { entry, members, table, nodes: &part.nodes, part, on_initial };
                 if let Some(block) = report.absorb(make(&request)) {
                     blocks.push(block);
                 }
@@ -77,10 +80,53 @@ impl System {
     }
 }
 
-fn groups(table: &EntityTable, is_own: impl Fn(usize) -> bool) -> Vec<(&'static EntityKind, Vec<u32>)> {
-    let mut groups: BTreeMap<(&'static str, usize), Vec<u32>> = BTreeMap::new();
+/// Entities that make one block.
+struct Group {
+    entry: &'static EntityKind,
+    on_initial: bool,
+    members: Vec<u32>,
+}
+
+fn groups(table: &EntityTable, is_own: impl Fn(usize) -> bool, on_initial: impl Fn(usize) -> bool) -> Vec<Group> {
+    let mut groups: BTreeMap<(&'static str, usize, bool), Vec<u32>> = BTreeMap::new();
     for at in (0..table.len()).filter(|&at| is_own(at)) {
-        groups.entry((table.kinds[at].name, table.properties[at])).or_default().push(at as u32);
+        groups.entry((table.kinds[at].name, table.properties[at], on_initial(at))).or_default().push(at as u32);
     }
-    groups.into_values().map(|members| (table.kinds[members[0] as usize], members)).collect()
+    let group = |((_, _, on_initial), members): (_, Vec<u32>)| Group {
+        entry: table.kinds[members[0] as usize],
+        on_initial,
+        members,
+    };
+    groups.into_iter().map(group).collect()
+}
+
+/// Nodes of bodies of small displacements, and of no other.
+struct NodesOfSmallDisplacement {
+    /// Elements of small displacements at each node, and other solid elements.
+    counts: [Vec<f64>; 2],
+}
+
+impl NodesOfSmallDisplacement {
+    /// Those of a part; collective.
+    fn of(part: &ModelPart) -> Self {
+        let mut counts = [vec![0.0; part.nodes.len()], vec![0.0; part.nodes.len()]];
+        let (elements, space) = (&part.elements, part.info.domain_size);
+        for at in 0..elements.len() {
+            let kind = elements.kinds[at];
+            if kind.cell.is_some_and(|cell| cell.dim() == space) {
+                let counts = &mut counts[usize::from(!kind.small_displacement)];
+                elements.nodes(at as u32).iter().for_each(|&node| counts[node as usize] = 1.0);
+            }
+        }
+        if let Some(share) = &part.share {
+            counts.iter_mut().for_each(|counts| share.halo.sum(counts));
+        }
+        Self { counts }
+    }
+
+    /// Whether all of some nodes are such.
+    fn hold(&self, nodes: &[u32]) -> bool {
+        let [small, other] = &self.counts;
+        nodes.iter().all(|&node| small[node as usize] > 0.0 && other[node as usize] == 0.0)
+    }
 }

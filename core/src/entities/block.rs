@@ -178,6 +178,8 @@ pub struct BlockRequest<'a> {
     pub nodes: &'a Nodes,
     /// The model part, for properties and step data.
     pub part: &'a ModelPart,
+    /// Whether loads act on the initial configuration: they stand on bodies of small displacements.
+    pub on_initial: bool,
 }
 
 /// All entities of one kind; writes the local systems of ranges of them.

@@ -57,6 +57,12 @@ macro_rules! entity_entry {
                 self
             }
 
+            /// Whether it is a piece of a body of small displacements.
+            pub const fn small_displacement(mut self, small_displacement: bool) -> Self {
+                self.kind.small_displacement = small_displacement;
+                self
+            }
+
             /// Variables of its data by which it loads the model.
             pub const fn loads(mut self, loads: &'static [&'static str]) -> Self {
                 self.kind.loads = Some(loads);

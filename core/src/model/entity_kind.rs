@@ -39,6 +39,8 @@ pub struct EntityKind {
     pub space: usize,
     /// Whether it is a ring: a piece of a body of revolution, of which the mesh is half a section.
     pub of_revolution: bool,
+    /// Whether it is a piece of a body of small displacements: equilibrium is that of the initial configuration.
+    pub small_displacement: bool,
     /// Variables with history that its nodes have: name and number of components.
     pub nodal: &'static [(&'static str, usize)],
     /// Variables of its data by which it loads the model; `None` where that is not stated.
@@ -48,7 +50,8 @@ pub struct EntityKind {
 impl EntityKind {
     /// A kind on no cell.
     pub const fn new(role: Role, entry: Entry) -> Self {
-        Self { entry, role, cell: None, space: 0, of_revolution: false, nodal: &[], loads: None }
+        let (of_revolution, small_displacement) = (false, false);
+        Self { entry, role, cell: None, space: 0, of_revolution, small_displacement, nodal: &[], loads: None }
     }
 
     /// Number of its nodes; 0 without a cell.

@@ -11,6 +11,8 @@ pub struct SolverInfo {
     pub explicit: bool,
     /// Whether each step is one linear solve without iteration.
     pub linear: bool,
+    /// Whether loads on bodies of small displacements follow the motion, as they do on others.
+    pub follower_loads: bool,
     /// Whether mesh or settings have errors, so that the part is not what the deck asks for: only other errors are looked for.
     pub incomplete: bool,
     /// Whether the load factor is an unknown, as with arc length.

@@ -96,7 +96,8 @@ fn forces_of(
     members: &[u32],
 ) -> Option<Vec<[f64; 3]>> {
     let (table, nodes) = (&part.conditions, &part.nodes);
-    let mut block = make(&BlockRequest { entry, members: members.to_vec(), table, nodes, part }).ok()?;
+    let mut block =
+        make(&BlockRequest { entry, members: members.to_vec(), table, nodes, part, on_initial: true }).ok()?;
     block.initialize(&part.view()).ok()?;
     let (size, mut out) = (block.unknowns().len(), LocalSystems::default());
     out.reset(members.len(), size, Want::Residual);

@@ -70,7 +70,8 @@ impl Bodies {
             };
             let members = members.to_vec();
             places.extend(members.iter().enumerate().map(|(at, &element)| (element, (bodies.blocks.len(), at))));
-            let request = BlockRequest { entry, members, table: &part.elements, nodes: &part.nodes, part };
+            let request =
+                BlockRequest { entry, members, table: &part.elements, nodes: &part.nodes, part, on_initial: false };
             let mut block = make(&request)?;
             block.initialize(&part.view())?;
             bodies.blocks.push(block);

@@ -24,10 +24,12 @@ pub trait DistributedLoad<const NODES: usize, const SIZE: usize>: 'static {
 /// displacements: its forces do not follow the motion.
 pub struct Distributed<L, const STILL: bool> {
     rule: &'static ShapeTable,
+    /// Whether forces act on the initial geometry: by the name of the condition, or since the body is one of small displacements.
+    still: bool,
     load: PhantomData<fn() -> L>,
 }
 
-/// One whose forces follow the motion.
+/// One whose forces follow the motion, but for bodies of small displacements.
 pub type Following<L> = Distributed<L, false>;
 /// One whose forces stay as they were at first.
 pub type AtStart<L> = Distributed<L, true>;
@@ -42,9 +44,10 @@ where
         displacements(L::SPACE)
     }
 
-    fn new(_request: &BlockRequest<'_>) -> Result<Self> {
+    fn new(request: &BlockRequest<'_>) -> Result<Self> {
         let shape = Shape::of(L::CELL, NODES).expect("loads are registered for known shapes only");
-        Ok(Self { rule: ShapeTable::get(shape, shape.cell().default_order + 1), load: PhantomData })
+        let rule = ShapeTable::get(shape, shape.cell().default_order + 1);
+        Ok(Self { rule, still: STILL || request.on_initial, load: PhantomData })
     }
 
     fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
@@ -55,7 +58,7 @@ where
     }
 
     fn tangent(&self) -> Tangent {
-        if STILL { Tangent::Zero } else { Tangent::General }
+        if self.still { Tangent::Zero } else { Tangent::General }
     }
 
     fn local_system(
@@ -67,7 +70,7 @@ where
         lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) -> Result<(), String> {
-        if STILL {
+        if self.still {
             let still = Gather { current: entity.initial, ..*entity };
             L::add(self.rule, &still, view, &mut [], rhs);
         } else {
