@@ -56,6 +56,23 @@ fn a_load_on_nodes_that_no_condition_takes_is_named() {
 }
 
 #[test]
+fn a_model_that_nothing_loads_is_named() {
+    let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
+    let path = scratch.path().join(DECK);
+    let mut deck = read_json(&path).expect("the deck");
+    let mut check = |loads: serde_json::Value| {
+        deck["processes"]["loads_process_list"] = loads;
+        std::fs::write(&path, serde_json::to_string_pretty(&deck).expect("JSON")).expect("a file");
+        said(&zelus(scratch.path(), &["check", DECK]))
+    };
+    let nothing = check(json!([]));
+    assert!(nothing.contains("warning[no-load]") && nothing.contains("nothing loads or moves the model"), "{nothing}");
+    let moved = check(json!([{"python_module": "assign_scalar_variable_process", "Parameters": {
+        "model_part_name": "Structure.Bottom", "variable_name": "DISPLACEMENT_Y", "value": "1.0e-6*t"}}]));
+    assert!(!moved.contains("no-load"), "a prescribed motion moves it: {moved}");
+}
+
+#[test]
 fn contact_that_no_step_meets_is_named() {
     let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
     let path = scratch.path().join(DECK);

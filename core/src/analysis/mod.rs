@@ -12,6 +12,7 @@ mod deck;
 mod driver;
 mod like;
 mod mesh;
+mod no_load;
 mod older_decks;
 mod rank_layout;
 mod regrouping;

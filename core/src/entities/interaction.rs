@@ -137,6 +137,11 @@ pub trait Interaction: Send + Sync {
         Vec::new()
     }
 
+    /// Before the first step: whether it may load or move the model by itself, as bodies that overlap do.
+    fn drives(&self) -> bool {
+        true
+    }
+
     /// Before the first step: where it joins bodies; `None` when it does not know.
     fn joins(&self, _part: &ModelPart) -> Option<Vec<Join>> {
         None

@@ -52,6 +52,10 @@ impl AssignFlag {
 }
 
 impl Process for AssignFlag {
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn before_loop(&mut self, model: &mut Model) -> Result<()> {
         self.apply(model)
     }

@@ -196,6 +196,10 @@ impl Process for AssignToEntities {
         Ok(())
     }
 
+    fn drives(&self) -> bool {
+        self.components.iter().any(|component| !component.value.is_zero())
+    }
+
     fn loads(&self, part: &ModelPart) -> Vec<Load> {
         let variables = || self.components.iter().map(|component| component.variable);
         self.containers.iter().filter_map(|of| self.target.load(part, variables(), of.carrier())).collect()

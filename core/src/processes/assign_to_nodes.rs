@@ -172,6 +172,10 @@ impl Process for AssignToNodes {
         Ok(())
     }
 
+    fn drives(&self) -> bool {
+        self.components.iter().filter_map(|component| component.value.as_ref()).any(|value| !value.is_zero())
+    }
+
     fn prescribes(&self, part: &ModelPart, time: f64) -> Vec<Prescription> {
         let is_here = self.target.path.split('.').next() == Some(part.tree.name.as_str());
         let Some(selection) = self.target.selection(&part.tree).ok().filter(|_| is_here) else { return Vec::new() };

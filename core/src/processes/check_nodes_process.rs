@@ -60,6 +60,10 @@ fn build_vector(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
 }
 
 impl Process for CheckNodes {
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root(&self.target.path)?;
         for (variable, _) in &self.expected {

@@ -50,6 +50,11 @@ pub trait Process: Send {
         Vec::new()
     }
 
+    /// Whether it may load or move the model at any time.
+    fn drives(&self) -> bool {
+        true
+    }
+
     /// Loads that it gives to a root part, each in place of what an earlier process gave there.
     fn loads(&self, _part: &ModelPart) -> Vec<Load> {
         Vec::new()

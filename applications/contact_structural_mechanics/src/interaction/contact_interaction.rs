@@ -129,6 +129,10 @@ impl Interaction for ContactInteraction {
         "contact"
     }
 
+    fn drives(&self) -> bool {
+        self.contact.overlaps
+    }
+
     fn step_factor(&self, part: &ModelPart) -> f64 {
         if part.info.is(CONTACT) { self.contact.setup.settings.solver.delta_time_factor } else { 1.0 }
     }

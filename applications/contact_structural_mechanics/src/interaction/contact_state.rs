@@ -31,6 +31,8 @@ pub(super) struct ContactState {
     holding: Holding,
     steps_since_search: usize,
     saved: SlaveStates,
+    /// Whether slave nodes begin inside their masters.
+    pub overlaps: bool,
     /// The surfaces of the interfaces in results.
     surfaces: InterfaceSurfaces,
     /// Notes and warnings for the user.
@@ -63,9 +65,12 @@ impl ContactState {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         add_contact_part(part, &interfaces);
         let mut messages = warnings_of_pairs(part, &settings.slaves, &interfaces);
-        messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves), &settings.solver));
+        let parts = (&settings.parts, &settings.slaves);
+        let (of_start, overlaps) = settle_all(part, &interfaces, parts, &settings.solver);
+        messages.extend(of_start);
         Ok(Self {
             messages,
+            overlaps,
             pairing: Pairing::new(interfaces, settings.nodal_normals),
             setup: Setup::new(settings),
             states: SlaveStates::default(),

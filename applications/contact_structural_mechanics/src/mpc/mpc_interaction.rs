@@ -49,6 +49,8 @@ const FAR: f64 = 1e-2;
 pub struct MpcInteraction {
     settings: MpcSettings,
     interfaces: Vec<Interface>,
+    /// Whether slave nodes begin inside their masters.
+    overlaps: bool,
     states: SlaveStates,
     saved: SlaveStates,
     relations: Relations,
@@ -97,11 +99,16 @@ impl MpcInteraction {
         require_slaves_of_first_order(part, &interfaces)?;
         add_contact_part(part, &interfaces);
         let mut messages = warnings_of_pairs(part, &settings.slaves, &interfaces);
+        let mut overlaps = false;
         if !settings.ties() {
-            messages.extend(settle_all(part, &interfaces, (&settings.parts, &settings.slaves), &settings.solver));
+            let parts = (&settings.parts, &settings.slaves);
+            let (of_start, inside) = settle_all(part, &interfaces, parts, &settings.solver);
+            messages.extend(of_start);
+            overlaps = inside;
         }
         Ok(Self {
             messages,
+            overlaps,
             settings,
             interfaces,
             states: SlaveStates::default(),
@@ -289,6 +296,10 @@ fn stiffness(young: f64, nodes: &Nodes) -> impl Fn(u32) -> f64 {
 impl Interaction for MpcInteraction {
     fn name(&self) -> &str {
         "contact by constraints"
+    }
+
+    fn drives(&self) -> bool {
+        self.overlaps
     }
 
     fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {

@@ -19,6 +19,10 @@ impl InteractionProcess {
 }
 
 impl Process for InteractionProcess {
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn interaction(&mut self, _model: &mut Model) -> Result<Option<(String, Box<dyn Interaction>)>> {
         Ok(self.interaction.take().map(|interaction| (self.root.clone(), interaction)))
     }

@@ -8,18 +8,22 @@ use crate::results::{PartsOfPairs, name};
 use crate::search::settle;
 use crate::solver::ContactSolverSettings;
 
-/// Before the first step: moves slave nodes onto their masters where the deck asks for it, or tells which lie inside them.
+/// Before the first step: moves slave nodes onto their masters where the deck asks for it, or tells which lie inside them; and says
+/// whether any does.
 pub(crate) fn settle_all(
     part: &mut ModelPart,
     interfaces: &[Interface],
     parts: PartsOfPairs<'_>,
     solver: &ContactSolverSettings,
-) -> Vec<Diagnostic> {
+) -> (Vec<Diagnostic>, bool) {
     let (tolerance, refuses) = (solver.adjust_tolerance, solver.largest_penetration > 0.0);
     let mut out = notes_of_bodies(part, parts.0);
     let bodies = bodies_of_nodes(part);
-    let settled =
-        interfaces.iter().filter_map(|of| settle(part, of, &bodies, &name(&of.key, parts), tolerance, refuses));
-    out.extend(settled);
-    out
+    let mut overlaps = false;
+    for of in interfaces {
+        let settled = settle(part, of, &bodies, &name(&of.key, parts), tolerance, refuses);
+        out.extend(settled.message);
+        overlaps |= settled.overlaps;
+    }
+    (out, overlaps)
 }

@@ -33,6 +33,15 @@ struct StartingNode {
     size: f64,
 }
 
+/// An interface before the first step.
+#[derive(Default)]
+pub struct Settled {
+    /// What was moved, or is wrong.
+    pub message: Option<Diagnostic>,
+    /// Whether slave nodes lie inside the master by more than round-off, so that contact loads the bodies by itself.
+    pub overlaps: bool,
+}
+
 /// Moves or reports the slave nodes of an interface, named `name`, before the first step; nodes are of `bodies`.
 ///
 /// Where `tolerance` is given, nodes whose distance is at most that many mesh sizes are moved onto the master, with their initial
@@ -45,18 +54,26 @@ pub fn settle(
     name: &str,
     tolerance: Option<f64>,
     refuses: bool,
-) -> Option<Diagnostic> {
+) -> Settled {
     if interface.open || part.info.step > 0 {
-        return None;
+        return Settled { message: None, overlaps: true };
     }
     find_nodal_h(part);
     let places = places(part, interface);
-    if let Some(problem) = one_body(part, interface, bodies, &places, name, refuses) {
-        return Some(problem);
-    }
-    if let Some(tolerance) = tolerance {
-        return adjust(part, &places, name, tolerance);
-    }
+    let overlaps = places.iter().any(|at| at.distance < -ROUND_OFF * at.size);
+    let message = if let Some(problem) = one_body(part, interface, bodies, &places, name, refuses) {
+        Some(problem)
+    } else if let Some(tolerance) = tolerance {
+        adjust(part, &places, name, tolerance)
+    } else {
+        penetration(part, &places, name, refuses)
+    };
+    Settled { message, overlaps }
+}
+
+/// The warning of slave nodes that lie inside the other body, an error where `refuses` holds and one lies deeper than a mesh size.
+/// Collective.
+fn penetration(part: &ModelPart, places: &[StartingNode], name: &str, refuses: bool) -> Option<Diagnostic> {
     let deep: Vec<&StartingNode> = places.iter().filter(|at| at.distance < -SILENT * at.size).collect();
     let points: Vec<_> = deep.iter().map(|at| (at.node, part.nodes.current[at.node as usize], at.size)).collect();
     let mut inside = inside(part, &points);

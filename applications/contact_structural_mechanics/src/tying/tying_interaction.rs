@@ -352,6 +352,10 @@ impl Interaction for TyingInteraction {
         "mesh tying"
     }
 
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {
         find_nodal_h(part);
         part.info.marks.insert(CONTACT, true);

@@ -1,6 +1,7 @@
 //! Last phase of a stage's preparation: the stage as built is checked, before its first step.
 
 use super::super::bodies::tell_what_holds;
+use super::super::no_load::warn_of_no_load;
 use super::super::solver::TimeScheme;
 use super::super::soundness::{prescriptions, warn_of_contradictions, warn_of_loads_given_twice, warn_of_twins};
 use super::built::BuiltStage;
@@ -30,6 +31,7 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
     warn_of_contradictions(part, processes, [middle, schedule.end_time], &mut problems);
     if matches!(solver.scheme()?, TimeScheme::Implicit(scheme) if scheme.is_static()) && part.info.step == 0 {
         tell_what_holds(part, system, &prescriptions(part, processes, middle), &mut problems);
+        warn_of_no_load(part, system, processes, &mut problems);
     }
     problems_of_all(&model.ranks, problems)?.finish()
 }

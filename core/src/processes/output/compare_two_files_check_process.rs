@@ -107,6 +107,10 @@ impl CompareTwoFiles {
 }
 
 impl Process for CompareTwoFiles {
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn files(&self) -> Vec<FileUse> {
         vec![FileUse::Reads(self.reference.clone())]
     }

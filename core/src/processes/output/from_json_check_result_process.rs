@@ -169,6 +169,10 @@ impl State for SavedCounter {
 }
 
 impl Process for FromJsonCheck {
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn state(&self) -> Option<Box<dyn State>> {
         Some(Box::new(SavedCounter(self.counter.counter)))
     }

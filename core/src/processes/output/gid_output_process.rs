@@ -202,6 +202,10 @@ impl State for GidOutputState {
 }
 
 impl Process for GidOutput {
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         self.part.find(model).map(|_| ())
     }

@@ -45,6 +45,10 @@ impl Extrapolation {
 }
 
 impl Process for Extrapolation {
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         self.part.find(model).map(|_| ())
     }

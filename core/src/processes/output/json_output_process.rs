@@ -338,6 +338,10 @@ impl<W: Write> Json<'_, W> {
 }
 
 impl Process for JsonOutput {
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         self.part.find(model).map(|_| ())
     }

@@ -195,6 +195,10 @@ impl State for SavedLengths {
 }
 
 impl Process for PointsOutput {
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
         let find = |point: &Point| {

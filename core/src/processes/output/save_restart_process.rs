@@ -101,6 +101,10 @@ fn file(folder: &Path, part: &str, label: f64) -> PathBuf {
 }
 
 impl Process for SaveRestart {
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         self.part.find(model).map(|_| ())
     }

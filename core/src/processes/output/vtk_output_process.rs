@@ -188,6 +188,10 @@ impl State for VtkOutputState {
 }
 
 impl Process for VtkOutput {
+    fn drives(&self) -> bool {
+        false
+    }
+
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         self.part.find(model).map(|_| ())
     }
