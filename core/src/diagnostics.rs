@@ -1,4 +1,4 @@
-//! What can go wrong, said with place, fact and remedy; one error type for the whole framework.
+//! Errors and warnings with place, fact and remedy; one error type for the whole framework.
 //!
 //! Problems of the input are gathered as [`Diagnostic`]s in a [`Report`] and shown together; everything that stops a
 //! run is an [`Error`], whose variant decides the exit code of the program.
@@ -81,9 +81,9 @@ pub struct Diagnostic {
     pub code: Name,
     /// Where, when an input file is to blame.
     pub place: Option<Place>,
-    /// What is the case, in one sentence without a final stop.
+    /// The fact, in one sentence without a final stop.
     pub fact: String,
-    /// What to do about it.
+    /// The remedy.
     pub remedy: Option<String>,
 }
 

@@ -1,7 +1,7 @@
-//! What holds each body: rigid motions that supports leave free, and whether contact, friction or nothing takes them.
+//! Restraint of each body: the rigid-body modes that supports leave free, and whether contact, friction or nothing restrains them.
 //!
-//! Bodies are connected elements. Of each, its rigid motions that its elements do not resist are unknowns; supports, constraints,
-//! ties and places in contact are rows over them. Motions that all rows leave alone are free.
+//! Bodies are connected elements. Of each body, the rigid-body modes that its elements do not resist are unknowns; supports,
+//! constraints, ties and places in contact are rows over them. Motions that all rows leave alone are free.
 
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ const SAMPLE: usize = 64;
 /// Share of its terms below which an element does not resist a motion.
 const RIGID: f64 = 1e-8;
 
-/// A rigid motion of a body: u(x) = translation + rotation × (x − centre) / size.
+/// A rigid-body mode of a body: u(x) = translation + rotation × (x − centre) / size.
 struct Motion {
     body: usize,
     translation: [f64; 3],
@@ -105,7 +105,7 @@ impl<'a> Bodies<'a> {
         Self { part, of_node, bodies, motions: Vec::new() }
     }
 
-    /// The rigid motions that an element of the body does not resist; collective.
+    /// The rigid-body modes that an element of the body does not resist; collective.
     fn find_motions(&mut self, system: &System) {
         let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let space = self.part.info.domain_size;
@@ -164,7 +164,7 @@ impl<'a> Bodies<'a> {
         add(motion.translation, cross(motion.rotation, arm))
     }
 
-    /// Motion of a node in a direction, by each rigid motion.
+    /// Displacement of a node in a direction, by each rigid-body mode.
     fn row(&self, node: u32, direction: [f64; 3], factor: f64, row: &mut [f64]) {
         let body = self.of_node[node as usize];
         for (entry, motion) in row.iter_mut().zip(&self.motions).filter(|(_, motion)| motion.body == body) {

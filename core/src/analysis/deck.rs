@@ -1,4 +1,4 @@
-//! What a deck says: its stages, and of each the keys at its top level, mesh and materials, processes.
+//! A deck as stages; each with the keys at its top level, mesh, materials and processes.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ pub(super) fn open(path: &Path) -> Result<(Document, PathBuf)> {
     Ok((Document::read(path)?, folder))
 }
 
-/// What a deck says of one stage.
+/// One stage of a deck.
 pub(super) struct StageDeck {
     /// Its name among the stages, or that of the problem where there is only one.
     pub name: String,
@@ -240,7 +240,7 @@ pub(super) fn add_names_only(solver: &SolverSettings, root: &str, folder: &Path,
     model.parts.remove(root);
     let mut part = ModelPart::new(root);
     part.tree.children = io::names_of_parts(&file)?;
-    // What is wrong with the settings was said when the mesh was to be read.
+    // Faults of the settings were reported when the mesh was read.
     let _ = solver.prepare(&mut part);
     part.info.solver.incomplete = true;
     model.add(part);

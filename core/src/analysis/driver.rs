@@ -1,4 +1,4 @@
-//! What a program that drives a run may do at the points of its loop.
+//! Interface of a program that drives a run: its calls at the points of the loop.
 
 use crate::assembly::System;
 use crate::diagnostics::Result;

@@ -10,7 +10,7 @@ use crate::diagnostics::Result;
 use crate::entities::regroup;
 use crate::model::ModelPart;
 
-/// Whose state is shown.
+/// Owner of the state that is visited.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Turn {
     /// That of a rank that was.
@@ -65,7 +65,7 @@ impl Regrouping {
         }
     }
 
-    /// What the rank to come is to remember of a stage: of `stages` by rank; `begins` is its own as it begins.
+    /// State of a stage on the new rank, from `stages`, the states of all earlier ranks; `begins` is the new rank's state at the start.
     ///
     /// # Errors
     /// States that do not fit each other or the mesh.

@@ -26,7 +26,7 @@ pub struct Sizes {
     pub unknowns: usize,
 }
 
-/// What a run leaves behind, as written by `--report`.
+/// Report of a run, as written by `--report`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunReport {
     /// Version of the program.

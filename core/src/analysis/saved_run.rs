@@ -1,8 +1,8 @@
 //! A whole run between two steps, as a file holds it.
 //!
-//! What a deck says and what is made of it at the start of a stage, as numbers of unknowns, blocks and geometry of interfaces, is
-//! made again from the deck; the file holds all that has come of it since, the fields to the bit. What a stage was made of
-//! is the model that the stages before have left, so that this is held, too.
+//! Contents of the deck, and objects made from them at the start of a stage (numbers of unknowns, blocks, geometry of interfaces), are
+//! made again from the deck; the file holds all later changes, the fields bitwise. A stage is made from the model that the stages
+//! before have left, so the file holds that model, too.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +18,7 @@ use crate::entities::{EntityBlock, regroup};
 use crate::model::{Field, Fields, Model, ModelPart, Share};
 use crate::parameters::{Node, Value};
 
-/// What participants of one kind remember, in their order.
+/// States of participants of one kind, in their order.
 pub(super) type States = Vec<Option<Box<dyn State>>>;
 
 /// The contents of the file: written from references, read into values.
@@ -34,9 +34,9 @@ pub(super) struct SavedRun<M, R> {
     pub before: Option<M>,
     /// The model now.
     pub model: M,
-    /// What the elements of earlier stages remember, by root part.
+    /// States of the elements of earlier stages, by root part.
     pub systems: BTreeMap<String, States>,
-    /// What the stage under way remembers.
+    /// State of the stage under way.
     pub stage: Option<SavedStage>,
     /// The report so far.
     pub report: R,
@@ -44,12 +44,12 @@ pub(super) struct SavedRun<M, R> {
     pub mesh: Option<String>,
 }
 
-/// What a stage remembers.
+/// State of a stage.
 #[derive(Serialize, Deserialize)]
 pub(super) struct SavedStage {
     pub begun: bool,
     pub first_length: Option<f64>,
-    /// What the states of the strategy go by.
+    /// Layout of the unknowns to which the states of the strategy refer.
     pub unknowns: Unknowns,
     pub strategy: Option<Box<dyn State>>,
     pub elements: States,
@@ -88,7 +88,7 @@ const FREE: [&str; 4] = [
     "problem_data.end_time",
     "problem_data.echo_level",
     "problem_data.parallel_type",
-    // What a mesh holds is compared itself.
+    // The contents of the mesh are compared themselves.
     "solver_settings.model_import_settings",
 ];
 
@@ -134,7 +134,7 @@ fn add(node: &Node, path: &str, hasher: &mut crc32fast::Hasher) {
     }
 }
 
-/// What the blocks remember.
+/// States of the blocks.
 pub(super) fn states_of(blocks: &[Box<dyn EntityBlock>]) -> States {
     blocks.iter().map(|block| block.state()).collect()
 }

@@ -33,7 +33,7 @@ pub(super) fn distribute(
     monitor: &mut dyn Monitor,
 ) -> Result<()> {
     let ranks = model.ranks.clone();
-    // What an earlier stage has shared out stays where it is, unless a modeler has changed it: then every rank has it whole.
+    // A part that an earlier stage has distributed stays so, unless a modeler has changed it: then every rank has it whole.
     if ranks.size() == 1 || model.parts.get(root).is_some_and(is_shared) {
         return Ok(());
     }

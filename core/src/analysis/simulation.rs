@@ -24,7 +24,7 @@ use crate::parameters::Node;
 use crate::processes::Process;
 use crate::strategies::{Monitor, StepRecord};
 
-/// What a caller of a [`Simulation`] chooses.
+/// Options of a [`Simulation`] that its caller chooses.
 #[derive(Debug, Clone, Default)]
 pub struct RunOptions {
     /// Threads; `None` takes all of the machine.

@@ -45,7 +45,7 @@ registered_kind! {
     }
 }
 
-/// What an application registers for a `solver_type`.
+/// Entry that an application registers for a `solver_type`.
 pub struct SolverDefinition {
     /// Registered solver that these settings, as the user wrote them, ask for instead; `None` for this one.
     pub variant: fn(&Node) -> Option<&'static str>,
@@ -80,7 +80,7 @@ impl SolverDefinition {
     };
 }
 
-/// What an application registers for a nested object of `solver_settings`.
+/// Entry that an application registers for a nested object of `solver_settings`.
 pub struct ExtensionDefinition {
     /// Further variables with history, for these settings of the nested object.
     ///
@@ -106,7 +106,7 @@ pub struct ExtensionDefinition {
     ///
     /// An error names a setting that does not fit.
     pub values: fn(&Settings) -> Result<Vec<(&'static str, f64)>>,
-    /// What it does to the part as read, with its materials; the folder is that of the deck.
+    /// Changes the part as read, with its materials; the folder is that of the deck.
     ///
     /// An error names what of mesh or settings does not fit.
     pub adopt: fn(&Settings, &Path, &mut ModelPart, &mut Report) -> Result<()>,
@@ -171,7 +171,7 @@ pub struct SolverSettings {
 impl SolverSettings {
     /// Checks `solver_settings`.
     ///
-    /// What does not fit goes to `report`.
+    /// Unsuitable settings go to `report`.
     ///
     /// # Errors
     /// No such solver, settings that are no object.
@@ -512,7 +512,7 @@ impl SolverSettings {
         problems.finish().map(|_| ())
     }
 
-    /// What the `type` of an object of the settings names; without one, `newton_raphson` or `block`.
+    /// Entry named by the `type` of an object of the settings; without one, `newton_raphson` or `block`.
     fn named<R: Registered>(&self, key: &str) -> Result<&'static R> {
         let path = format!("{key}.type");
         let name = self.settings.node().get_path(&path).map_or(Ok(""), Node::str)?;

@@ -21,7 +21,7 @@ const ONE_STEP: f64 = 1e4;
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimeStepping {
     rule: StepLength,
-    /// What becomes of the step that would go beyond the end.
+    /// Treatment of the last step where it would pass the end time.
     last_step: LastStep,
 }
 

@@ -15,7 +15,7 @@ use super::rows::{ROWS, fill_rows, starts};
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{MasterSlaveConstraint, ModelPart};
 
-/// What became of an unknown.
+/// Role of an unknown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 enum Role {
     Free(u32),
@@ -54,10 +54,10 @@ pub struct Equations {
     has_slaves: bool,
     #[serde(skip)]
     symmetric: bool,
-    /// What constraints hand on to fixed unknowns.
+    /// Contributions of constraints to fixed unknowns.
     #[serde(skip)]
     pub(super) leaning: Vec<Leaning>,
-    /// What the equations stand for.
+    /// Meaning of the equations.
     #[serde(skip)]
     pub layout: Layout,
 }

@@ -1,4 +1,4 @@
-//! What computes on a model part for one solver.
+//! Objects that compute on a model part for one solver.
 
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ pub struct System {
     pub elements: Vec<Box<dyn EntityBlock>>,
     /// Kernels over the conditions of this rank.
     pub conditions: Vec<Box<dyn EntityBlock>>,
-    /// What acts between bodies, e.g. contact.
+    /// Interactions between bodies, e.g. contact.
     pub interactions: Vec<Box<dyn Interaction>>,
 }
 

@@ -119,13 +119,13 @@ impl Ranks {
         sum[0]
     }
 
-    /// What to exchange so that rank 0 gets a list, and the others nothing.
+    /// Lists to exchange so that rank 0 gets `own`, and the others nothing.
     pub fn for_root<T>(&self, own: Vec<T>) -> Vec<Vec<T>> {
         let others = (1..self.size()).map(|_| Vec::new());
         std::iter::once(own).chain(others).collect()
     }
 
-    /// What every rank gives, by rank, on rank 0; nothing on the others. Collective.
+    /// The numbers of every rank, by rank, on rank 0; nothing on the others. Collective.
     pub fn to_root(&self, own: Vec<f64>) -> Vec<Vec<f64>> {
         if self.size() == 1 {
             return vec![own];
@@ -145,7 +145,7 @@ impl Ranks {
             .collect()
     }
 
-    /// What the first rank with something to say says; collective.
+    /// The text of the first rank that has one; collective.
     pub fn first_to_say(&self, own: Option<String>) -> Option<String> {
         if self.size() == 1 || !self.any(own.is_some()) {
             return own;
@@ -178,7 +178,7 @@ impl Ranks {
         self.size() == 1 || self.gather_equal_bytes(&own).chunks_exact(own.len()).all(|other| *other == own)
     }
 
-    /// The last act of a failed run on several processes: rank 0 says `message`, and all end with `code`.
+    /// The last act of a failed run on several ranks: rank 0 prints `message`, and all end with `code`.
     ///
     /// Another rank speaks only when rank 0 does not know of the failure.
     pub fn end_after_failure(&self, message: &str, code: u8) -> ! {

@@ -1,4 +1,4 @@
-//! What processes can do together, and the process that is alone.
+//! Collective operations of ranks, and the single rank that needs none.
 
 /// How the processes of a run reach each other: MPI, or another way that a program brings.
 ///
@@ -10,22 +10,22 @@ pub trait Communicator: Send + Sync {
     /// Number of processes.
     fn size(&self) -> usize;
 
-    /// What every rank gives, by rank.
+    /// The bytes of every rank, by rank.
     fn gather_bytes(&self, own: &[u8]) -> Vec<Vec<u8>>;
 
-    /// What every rank gives, by rank.
+    /// The numbers of every rank, by rank.
     fn gather_numbers(&self, own: &[f64]) -> Vec<Vec<f64>>;
 
-    /// What every rank gives, one after another; each gives as many bytes.
+    /// The bytes of every rank, one after another; each gives as many bytes.
     fn gather_equal_bytes(&self, own: &[u8]) -> Vec<u8>;
 
     /// Sets each bit that is set on any rank; collective.
     fn or(&self, bytes: &mut [u8]);
 
-    /// What every rank gives, one after another; rank r gives `counts[r]` numbers.
+    /// The numbers of every rank, one after another; rank r gives `counts[r]` numbers.
     fn gather_counted(&self, own: &[f64], counts: &[usize]) -> Vec<f64>;
 
-    /// What every rank gives, one after another; each gives as many numbers, few.
+    /// The numbers of every rank, one after another; each gives as many numbers, few.
     fn gather_equal_numbers(&self, own: &[f64]) -> Vec<f64> {
         self.gather_counted(own, &vec![own.len(); self.size()])
     }

@@ -138,9 +138,9 @@ pub struct EntityError {
     pub id: usize,
     /// Ids of its nodes.
     pub nodes: Vec<usize>,
-    /// What is the case.
+    /// The fact.
     pub fact: String,
-    /// What to do.
+    /// The remedy.
     pub remedy: &'static str,
 }
 
@@ -166,7 +166,7 @@ pub struct Gauss {
     pub shape: Vec<f64>,
 }
 
-/// What a block is made from.
+/// Arguments from which a block is made.
 pub struct BlockRequest<'a> {
     /// The registered kind.
     pub entry: &'static EntityKind,
@@ -290,7 +290,7 @@ pub trait EntityBlock: Send + Sync {
         Ok(())
     }
 
-    /// What its entities remember, for the file of a saved run.
+    /// State of its entities, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
@@ -353,5 +353,5 @@ pub trait EntityBlock: Send + Sync {
     }
 }
 
-/// What entities without tractions say of it.
+/// Message of entities without tractions.
 pub(super) const NO_TRACTIONS: &str = "its stress is not stated as a function of the displacements of its nodes";

@@ -1,4 +1,4 @@
-//! What the entities of a block remember, as it stands in a saved run: by the ids of the entities.
+//! State of the entities of a block, as it stands in a saved run: by the ids of the entities.
 
 use rustc_hash::FxHashMap;
 use serde::de::DeserializeOwned;
@@ -8,7 +8,7 @@ use zelus_linear_algebra::{Carrier, State, packed, stored_as_bytes};
 use super::block::EntityBlock;
 use crate::diagnostics::{Diagnostic, Result};
 
-/// What entities of one kind remember.
+/// State of entities of one kind.
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Self")]
 pub(super) struct BlockState {
@@ -65,7 +65,7 @@ impl BlockState {
     }
 }
 
-/// What `blocks`, as they begin, are to remember of what those of all ranks that were did.
+/// States of `blocks` (as they begin), from the states of the earlier blocks of all ranks.
 ///
 /// # Errors
 /// Entities that no rank had; blocks whose state goes by no ids.

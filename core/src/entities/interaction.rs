@@ -1,4 +1,4 @@
-//! What acts between bodies and changes with the state: contact above all.
+//! Interactions between bodies that change with the state: contact above all.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use super::pair_state::PairState;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{Carriers, ModelPart};
 
-/// What the active-set stage of an iteration changed.
+/// Changes by the active-set update of an iteration.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SetChange {
     /// Ids of nodes that became active.
@@ -36,7 +36,7 @@ impl SetChange {
     }
 }
 
-/// What follows when the iteration has converged.
+/// Action after the iteration has converged.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outer {
     /// The step is solved.
@@ -62,9 +62,9 @@ pub struct MasslessNodes {
 
 /// A participant in the solution of steps: contact, ties, constraints that switch, an observer.
 ///
-/// Of itself it only has a name and the ends of steps. What else it takes part in are capabilities, each a trait of its own
-/// that it gives out where it has it. The strategy calls them in the order in which they stand here. The model part they
-/// receive holds no interactions, so it can be read and changed freely.
+/// Of itself it only has a name and the ends of steps. Its other roles are capabilities, each a trait of its own that it gives out
+/// where it has it. The strategy calls them in the order in which they stand here. The model part they receive holds no interactions,
+/// so it can be read and changed freely.
 pub trait Interaction: Send + Sync {
     /// Short name for the log.
     fn name(&self) -> &str;
@@ -98,7 +98,7 @@ pub trait Interaction: Send + Sync {
         Ok(())
     }
 
-    /// What it remembers between steps beside the fields of the model, for the file of a saved run.
+    /// State between steps beside the fields of the model, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
@@ -142,7 +142,7 @@ pub trait Interaction: Send + Sync {
         None
     }
 
-    /// What it does now at a node of its own (index), in a word: "is open", "sticks", "slides"; `None` at other nodes.
+    /// Contact state at a node of its own (index), in a word: "is open", "sticks", "slides"; `None` at other nodes.
     fn node_state(&self, _node: u32) -> Option<&'static str> {
         None
     }
@@ -218,8 +218,8 @@ pub trait Coupling {
         1.0
     }
 
-    /// What may be added to the tangent's diagonal of its unknowns where constraints are redundant, as by supports at
-    /// the edge of an interface; `None` where that must end the run.
+    /// Term for the tangent's diagonal of its unknowns where constraints are redundant, as by supports at the edge of an interface;
+    /// `None` where that must end the run.
     fn relaxation(&self) -> Option<f64> {
         None
     }

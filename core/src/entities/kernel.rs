@@ -17,7 +17,7 @@ use super::view::StepView;
 use crate::diagnostics::{Report, Result, unfit};
 use crate::model::{EntityKind, Properties, Role};
 
-/// What a kernel is told of its entity, beside the step's fields.
+/// Data of its entity that a kernel gets, beside the step's fields.
 #[derive(Clone, Copy)]
 pub struct Gather<'a, const NODES: usize> {
     /// Index of the entity in the model part's table.

@@ -1,4 +1,4 @@
-//! What an interaction tells of one pair of bodies in an accepted state.
+//! State of one pair of bodies, as an interaction reports it after an accepted step.
 
 /// A pair of bodies that an interaction acts between, with what became of its first side; every node counts in one pair.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -71,7 +71,7 @@ pub fn write_saved(ranks: &Ranks, path: &Path, contents: &impl Serialize) -> Res
     ranks.agree(written)
 }
 
-/// What a rank sends, in pieces: the rank, where they begin and end.
+/// Pieces that a rank sends: the rank, where they begin and end.
 fn pieces(rank: usize, length: usize) -> impl Iterator<Item = (usize, usize, usize)> {
     (0..length).step_by(4 * AT_ONCE).map(move |from| (rank, from, length.min(from + 4 * AT_ONCE)))
 }
@@ -142,7 +142,7 @@ impl SavedFile {
         self.entries.len()
     }
 
-    /// What one of them has saved.
+    /// The saved data of one rank.
     ///
     /// # Errors
     /// Contents that are damaged, or that this program does not know.

@@ -22,7 +22,7 @@ registered_kind! {
         build: MeshReader;
         /// Endings of its files, without the dot.
         endings: &'static [&'static str] = &[],
-        /// What writes it; `None` where it is read only.
+        /// Function that writes it; `None` where it is read only.
         write: Option<MeshWriter> = None,
     }
 }

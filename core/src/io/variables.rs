@@ -7,7 +7,7 @@ use crate::registry;
 /// The kind of laws, which applications declare.
 const LAW: &str = "constitutive_law";
 
-/// What the variable (or component) called `name` holds; `None` when there is none.
+/// Kind of the variable (or component) called `name`; `None` when there is none.
 pub(super) fn kind_of(name: &str) -> Option<VariableKind> {
     named(name).map(|named| match named {
         Named::Whole(_, kind) => kind,

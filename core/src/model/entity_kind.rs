@@ -1,4 +1,4 @@
-//! What a mesh knows of a registered element or condition: its name and its shape.
+//! Name and shape of a registered element or condition, as a mesh knows it.
 
 use std::ops::Deref;
 

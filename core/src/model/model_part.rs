@@ -58,7 +58,7 @@ pub struct ModelPart {
     /// The processes that have this part, in whole or in shares.
     #[serde(skip)]
     pub ranks: Ranks,
-    /// What this rank has of a mesh that several share; `None` when this process computes everything.
+    /// Share of this rank in a distributed mesh; `None` when this rank computes everything.
     pub share: Option<Share>,
 }
 

@@ -25,7 +25,7 @@ pub struct Nodes {
     pub values: Fields,
     /// Flags.
     pub flags: Flags,
-    /// What is prescribed.
+    /// Prescribed unknowns.
     pub fixities: Fixities,
     /// How often the bodies have changed their shape since the run began: what was made of initial positions is made anew then.
     #[serde(default)]

@@ -18,7 +18,7 @@ pub struct Rates {
     pub second: Option<&'static str>,
     /// Its first derivative half a step later, in explicit integration.
     pub middle: Option<&'static str>,
-    /// What supports and constraints take up: minus the residual.
+    /// Reaction of supports and constraints: minus the residual.
     pub reaction: Option<&'static str>,
     /// The residual that explicit integration accelerates.
     pub out_of_balance: Option<&'static str>,

@@ -1,4 +1,4 @@
-//! What the results of an application are looked at for, where a deck names nothing.
+//! Default output variables of an application, written where a deck names none.
 
 /// Results beside the unknowns and their reactions; an application registers its own by [`crate::register_usual_results`].
 pub struct UsualResults {

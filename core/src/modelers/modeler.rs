@@ -1,4 +1,4 @@
-//! What a modeler is, and how a list of them is run.
+//! The trait of modelers, and the run of a list of them.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What an object can be set to: every key with its default, its type and the comment that documents it.
+//! Settings of an object: every key with its default, its type and the comment that documents it.
 
 use std::path::Path;
 
@@ -25,7 +25,7 @@ pub struct Defaults {
 pub struct Entry {
     /// Dotted path of the key from the object's root.
     pub path: String,
-    /// What the value is, e.g. `a number`.
+    /// Type of the value, e.g. `a number`.
     pub kind: &'static str,
     /// The default as compact JSON.
     pub default: String,

@@ -1,4 +1,4 @@
-//! What a partition costs each rank, counted on the mesh.
+//! Costs of a partition for each rank, counted on the mesh.
 //!
 //! Every rank keeps its own elements with their nodes, and all of the interfaces. With d unknowns a node, g ghosts, p copies
 //! that neighbours have of own nodes, C nodes that all ranks have, F slave facets of all ranks, about as many as slave nodes,
@@ -30,7 +30,7 @@ use crate::model::ModelPart;
 /// Products of the matrix in a Krylov iteration with multigrid: its own, a residual, and two smoothing steps on each way.
 pub const PRODUCTS: usize = 6;
 
-/// What one rank has and whom it meets.
+/// Entities of one rank, and its neighbours.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct RankCounts {
     /// Elements it evaluates.
@@ -140,7 +140,7 @@ impl Counts {
         Self { ranks, imbalance, cut: partition.cut, entries, unknowns_per_node: space.max(1), common }
     }
 
-    /// What a rank sends in a step, by the table at the head of this file.
+    /// Bytes and messages that a rank sends in a step, by the table at the head of this file.
     pub fn traffic(&self, rank: usize, repeats: Repeats) -> Traffic {
         let own = &self.ranks[rank];
         let (newton, krylov, d) = (repeats.newton, repeats.krylov, self.unknowns_per_node);

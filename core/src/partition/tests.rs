@@ -278,7 +278,7 @@ fn slave_nodes_go_with_their_mesh_nodes_and_come_back() {
     assert!(joined.cut_like(&like).unwrap().slave_nodes == like.slave_nodes);
 }
 
-/// What is left out of a process's settings is its default, the whole skin, and parts that it needs whole are kept.
+/// A setting that a process leaves out has its default, the whole skin, and parts that it needs whole are kept.
 #[test]
 fn processes_say_what_every_rank_keeps() {
     let part = two_blocks(3);

@@ -18,7 +18,7 @@ struct Faces {
     pulled: usize,
 }
 
-/// What to say where `variable` pulls at some of the `conditions`; `sign` is that of the value where it is a constant.
+/// Warning where `variable` pulls at some of the `conditions`; `sign` is that of the value where it is a constant.
 pub(super) fn pulling(
     part: &mut ModelPart,
     conditions: &[u32],

@@ -29,7 +29,7 @@ pub trait Process: Send {
         Ok(())
     }
 
-    /// What acts between bodies by its doing, and on which part: asked once, after [`Process::initialize`].
+    /// Interaction between bodies that the process makes, and its part: asked once, after [`Process::initialize`].
     ///
     /// # Errors
     /// As [`Process::initialize`].
@@ -135,7 +135,7 @@ pub trait Process: Send {
         None
     }
 
-    /// What it remembers between steps, for the file of a saved run.
+    /// State between steps, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
@@ -180,7 +180,7 @@ pub trait Process: Send {
     }
 }
 
-/// What a process is made from.
+/// Arguments from which a process is made.
 pub struct ProcessRequest<'a> {
     /// Its registered entry.
     pub entry: &'static Entry,

@@ -87,7 +87,7 @@ macro_rules! registered_kind {
         $(#[$doc])*
         $vis struct $type {
             entry: $crate::registry::Entry,
-            /// What makes the object.
+            /// Function that makes the object.
             pub build: $build,
             $($(#[$field_doc])* pub $field: $field_type,)*
         }

@@ -239,8 +239,8 @@ fn sums(
     columns.dedup();
     // Forces and moments of each kind, and of what is left over.
     let mut all = vec![[[[0.0; 3]; 2]; KINDS + 1]; columns.len()];
-    // What loads and supports feed in, what they take out, and the moments of both without regard to their sense: supports that
-    // push against each other alone add up to nothing, beside which all is large.
+    // Input and output by loads and supports, and the moments of both as absolute values: supports that push against each other alone
+    // add up to nothing, beside which all is large.
     let mut through = vec![[0.0; 3]; columns.len()];
     for variable in variables {
         let at = columns.iter().position(|column| *column == variable.column).expect("one of them");

@@ -28,30 +28,30 @@ pub struct UnknownBalance {
     pub moments: Option<Sums>,
     /// Centre of the box around the initial mesh.
     pub centre: [f64; 3],
-    /// What goes through the body, of unknowns that move nothing, e.g. heat (power).
+    /// Flows through the body, of unknowns that move nothing, e.g. heat (power).
     #[serde(default)]
     pub flows: Option<Flows>,
 }
 
 left_out_of_json!(UnknownBalance, "flows");
 
-/// What goes in, out and stays: entering − leaving + elements + interactions = stored but for what is out of balance.
+/// Flows into, out of and within the body: entering − leaving + elements + interactions = stored but for what is out of balance.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flows {
-    /// What loads and supports feed in, node by node.
+    /// Input by loads and supports, summed node by node (power).
     pub entering: f64,
-    /// What they take out.
+    /// Output by loads and supports (power).
     pub leaving: f64,
-    /// What the body keeps, below zero where it gives.
+    /// Rate of storage in the body, negative where it releases.
     pub stored: f64,
 }
 
-/// What adds up to nothing.
+/// Terms of the balance; their sum is zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sums {
     /// External forces of conditions and elements.
     pub loads: [f64; 3],
-    /// What supports and constraints to fixed unknowns carry.
+    /// Reactions of supports and of constraints to fixed unknowns.
     pub reactions: [f64; 3],
     /// Internal forces: nothing but where elements hold to the ground, or turn around an axis; of heat, what flow carries in.
     pub elements: [f64; 3],
@@ -59,7 +59,7 @@ pub struct Sums {
     pub interactions: [f64; 3],
     /// Minus what inertia, damping and storage take up.
     pub inertia: [f64; 3],
-    /// What is left over on unknowns that nothing holds, and between the sides of pairs.
+    /// Remainder on unsupported unknowns, and between the sides of pairs.
     pub out_of_balance: [f64; 3],
     /// Its size by that of the largest of the others, a pair's and what loads and supports push one way among them.
     pub relative: f64,

@@ -9,7 +9,7 @@ use crate::diagnostics::Result;
 use crate::parameters::Settings;
 use crate::{register, registered_kind};
 
-/// What a builder does.
+/// Action of a builder.
 #[derive(Clone, Copy)]
 pub enum Builder {
     /// The system goes to the solver as it is.

@@ -22,8 +22,8 @@ pub(super) fn contracts(records: &[IterationRecord], more: usize) -> bool {
 /// Largest change, as a share, of a measure that comes back every other iteration.
 const SAME: f64 = 0.02;
 
-/// Whether the iteration goes to and fro between two states while no interaction changes its own: points that yield in the
-/// one and not in the other.
+/// Whether the iteration oscillates between two states while no interaction changes its own: points that yield in the one and not in
+/// the other.
 pub(super) fn swings(records: &[IterationRecord]) -> bool {
     let [.., a, b, c, d] = records else { return false };
     if [a, b, c, d].iter().any(|record| record.active_set_changes + record.stick_slip_changes > 0) {

@@ -148,7 +148,7 @@ pub fn is_last_digit(increment: f64, value: f64) -> bool {
 /// One measured block.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Check {
-    /// What was measured, e.g. `residual`.
+    /// Measured quantity, e.g. `residual`.
     #[serde(deserialize_with = "names::read")]
     pub label: Name,
     /// Norm divided by its reference.
@@ -163,12 +163,12 @@ pub struct Check {
     pub converged: bool,
 }
 
-/// What a criterion says of an iteration.
+/// Verdict of a criterion on an iteration.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Verdict {
     /// Whether the iteration is good enough.
     pub converged: bool,
-    /// What was measured.
+    /// Measured quantities.
     pub checks: Vec<Check>,
 }
 
@@ -185,7 +185,7 @@ pub trait ConvergenceCriterion: Send {
     fn judge(&self, measures: &Measures<'_>) -> Verdict;
 }
 
-/// What a criterion is made from.
+/// Arguments from which a criterion is made.
 pub struct CriterionRequest<'a> {
     /// The solver settings, defaults filled in.
     pub settings: &'a Settings,

@@ -228,7 +228,7 @@ impl ExplicitStrategy {
         })
     }
 
-    /// What supports and constraints must carry: the residual less the inertia.
+    /// Force that supports and constraints must carry: the residual less the inertia.
     fn unbalanced(&self, part: &ModelPart, system: &System, residual: &[f64]) -> Vec<f64> {
         let acceleration = system.dofs.column(part, SECOND, 0);
         residual.iter().zip(acceleration).zip(&self.mass).map(|((r, a), m)| r - m * a).collect()

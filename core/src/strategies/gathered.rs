@@ -23,14 +23,14 @@ pub(super) struct Gathered {
     solves: u64,
     /// As many threads as there are on the machine of rank 0, on rank 0.
     threads: OnceLock<Option<Pool>>,
-    /// What solvers that work where the rows are have in place of rank 0.
+    /// Distributed rows, for solvers that use them in place of rank 0.
     pub(super) shared: SharedRows,
     /// Solves where the rows are, in place of rank 0.
     #[cfg(feature = "petsc")]
     pub(super) petsc: Option<super::owned_rows::OwnedRows>,
 }
 
-/// What graphs here are stamped beyond those of one rank.
+/// Flag in the stamps of graphs gathered here, which tells them from graphs of one rank.
 const GATHERED: u64 = 1 << 32;
 
 /// Numbers that say what an equation is: place of its node, meaning, position.
@@ -152,12 +152,12 @@ impl Gathered {
         None
     }
 
-    /// What the equations stand for, on rank 0.
+    /// Meaning of the equations, on rank 0.
     pub(super) fn meanings(&self) -> &[Meaning] {
         &self.whole.meanings
     }
 
-    /// What an equation stands for that [`Gathered::not_condensed`] or the solver of rank 0 names.
+    /// Meaning of an equation that [`Gathered::not_condensed`] or the solver of rank 0 names.
     pub(super) fn meaning(&self, equation: usize) -> Option<Meaning> {
         #[cfg(feature = "petsc")]
         if let Some(rows) = &self.petsc {

@@ -16,7 +16,7 @@ const CORRECTIONS: usize = 12;
 /// Residual relative to the right-hand side at which corrections stop.
 const ACCURACY: f64 = 1e-10;
 
-/// What a linear solve gave.
+/// Result of a linear solve.
 pub(super) struct Solved {
     /// Increment of the equations.
     pub increment: Vec<f64>,
@@ -189,7 +189,7 @@ fn solve_shared(
     solve(share, rhs)
 }
 
-/// What a rank knows of a solve that rank 0 did.
+/// Report on a rank other than 0 of a solve that rank 0 did.
 fn elsewhere() -> SolveReport {
     SolveReport {
         engine: "rank 0",

@@ -10,11 +10,11 @@ use crate::model::ModelPart;
 use crate::parameters::{Node, Settings};
 use crate::{register, registered_kind, registry};
 
-/// What a linear solver is made from.
+/// Arguments from which a linear solver is made.
 pub struct LinearSolverRequest<'a> {
     /// `linear_solver_settings` of the deck.
     pub settings: &'a Settings,
-    /// What iterative engines do with multipliers.
+    /// Treatment of multipliers by iterative engines.
     pub multipliers: Multipliers,
     /// Relative residual below which an answer gains the iteration around it nothing.
     pub tolerance: f64,
@@ -89,7 +89,7 @@ pub(crate) fn unknowns_of_all(part: &ModelPart, system: &System) -> usize {
     if part.share.is_some() { part.ranks.total(own as f64) as usize } else { own }
 }
 
-/// What PETSc solves with on several ranks, and a sentence saying so; `None` where rank 0 shall solve for all.
+/// PETSc's solver for several ranks, and a sentence about it; `None` where rank 0 shall solve for all.
 ///
 /// `is_shared` tells that the deck's solver works where the rows are itself. `petsc_engine` names an engine, or is `"automatic"` or `"none"`; `petsc_options` are words of PETSc's own command line.
 ///

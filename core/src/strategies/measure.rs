@@ -6,7 +6,7 @@ use super::criterion::{Block, Check, ConvergenceCriterion, Measures, Norm, Verdi
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
 
-/// What of the unknowns is measured.
+/// Measured quantity of the unknowns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// ‖r‖ against the largest norm before and after the first solve of the step.
@@ -58,9 +58,9 @@ impl Tolerance {
 /// of the deck, and hide the smaller numbers. Kratos sums them (`criterion_sums_variables`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measure {
-    /// What is measured.
+    /// Measured quantity.
     pub form: Form,
-    /// Of which unknowns.
+    /// Unknowns that are measured.
     pub block: Block,
     /// Against what.
     pub tolerance: Tolerance,
@@ -114,7 +114,7 @@ impl Measure {
                     self.of_variable(norm, reference, || is_last_digit(norm.size, total.size))
                 };
                 let mut checks: Vec<Check> = norms(measures.increment).into_iter().zip(&totals).map(check).collect();
-                // What is zero but for round-off moves by as much as it is: it holds up no other variable.
+                // An unknown that is zero but for round-off moves by as much as its value: it does not hold up other variables.
                 if checks.iter().any(|check| check.converged) {
                     for (kind, check) in checks.iter_mut().enumerate() {
                         check.converged = check.converged || is_balanced(kind);

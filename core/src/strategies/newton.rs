@@ -322,7 +322,7 @@ impl NewtonRaphson {
         Ok(Solved { increment, relative_residual, iterations, engine: engine.to_owned(), fallback })
     }
 
-    /// What the criterion says of the state after an iteration.
+    /// Verdict of the criterion on the state after an iteration.
     pub(super) fn judge(
         &self,
         part: &ModelPart,

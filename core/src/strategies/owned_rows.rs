@@ -34,9 +34,9 @@ pub(super) struct OwnedRows {
     condensing: Option<CondensationSettings>,
     /// The node of each equation in the rows of this rank, and whether it is a multiplier; only where these are condensed.
     held: Held,
-    /// What is condensed now, with the stamp of the rows it was made of, or why it is not.
+    /// Condensed system, with the stamp of the rows it was made of, or the reason why it is not condensed.
     condensed: Option<(Result<OwnedCondensation, NotCondensable>, u64)>,
-    /// What the equations stand for that are to blame for something.
+    /// Meaning of the equations that are to blame for something.
     meanings: BTreeMap<usize, Meaning>,
     /// PETSc runs as long as they do, and the solver needs it to the end.
     _ranks: Ranks,
@@ -79,7 +79,7 @@ impl<'a> Here<'a> {
         wanted.iter().zip(packed.chunks_exact(4)).filter_map(meaning).collect()
     }
 
-    /// Positions and directions of equations, for rigid motions; collective.
+    /// Positions and directions of equations, for rigid-body modes; collective.
     fn modes(&self, equations: &[u32]) -> RigidModes {
         let of = |e: &u32| &self.dofs.dofs()[self.unknowns[*e as usize] as usize];
         let component = |e: &u32| of(e).variable.component.filter(|_| of(e).moves_mesh()).unwrap_or(u8::MAX);
@@ -185,7 +185,7 @@ impl OwnedRows {
         self.condensed.as_ref().and_then(|(condensed, _)| condensed.as_ref().err().copied())
     }
 
-    /// What an equation stands for that an error or [`OwnedRows::not_condensed`] names.
+    /// Meaning of an equation that an error or [`OwnedRows::not_condensed`] names.
     pub(super) fn meaning(&self, equation: usize) -> Option<Meaning> {
         self.meanings.get(&equation).copied()
     }

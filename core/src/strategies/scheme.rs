@@ -51,7 +51,7 @@ pub trait Scheme: Send {
     /// Derivatives from the present unknowns.
     fn update(&self, _part: &mut ModelPart) {}
 
-    /// What inertia and damping add in the present state; `None` when the problem is static.
+    /// Contribution of inertia and damping in the present state; `None` when the problem is static.
     fn inertia(&self, _part: &ModelPart, _dofs: &DofTable) -> Option<Inertia> {
         None
     }
@@ -71,7 +71,7 @@ pub trait Scheme: Send {
     /// The forces that inertia and damping took up at the end of an accepted step, a number an unknown.
     fn keep(&mut self, _forces: Vec<f64>) {}
 
-    /// What it remembers between steps beside the fields of the model, for the file of a saved run.
+    /// State between steps beside the fields of the model, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
@@ -125,7 +125,7 @@ pub(super) fn update_newmark(part: &mut ModelPart, beta: f64, gamma: f64) {
     }
 }
 
-/// No inertia: time only orders the loads.
+/// No inertia: time is the load factor.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct StaticScheme;
 
@@ -135,7 +135,7 @@ impl Scheme for StaticScheme {
     }
 }
 
-/// What a scheme is made from.
+/// Arguments from which a scheme is made.
 pub struct SchemeRequest<'a> {
     /// The solver settings, defaults filled in.
     pub settings: &'a Settings,

@@ -23,7 +23,7 @@ type Row = (u32, Vec<u32>, Vec<f64>);
 /// A value with its row and column.
 type Entry = (u32, u32, f64);
 
-/// What a rank has of the system of all ranks.
+/// Share of a rank in the system of all ranks.
 pub(super) struct Share<'a> {
     pub(super) ranks: &'a Ranks,
     /// Of its equations, those that are held without a number.
@@ -35,7 +35,7 @@ pub(super) struct Share<'a> {
     pub(super) unknowns: Option<&'a [u32]>,
 }
 
-/// What the system of all ranks has here beside the bulk of this one.
+/// Entries of the system of all ranks that this rank has beside its bulk.
 #[derive(Default)]
 pub(super) struct SharedRows {
     /// Stamps of what it was made of.
@@ -156,7 +156,7 @@ fn numbered_row<'a>(
     (row, columns, values)
 }
 
-/// What this rank has of the rows of each other one.
+/// Entries of this rank in the rows of each other rank.
 fn rows_of_others(ranks: &Ranks, numbering: &Numbering, places: &Places, matrices: &[&Csr]) -> Vec<Vec<Row>> {
     let mut rows = vec![Vec::new(); ranks.size()];
     for (e, number) in numbering.numbered().filter(|(_, number)| places.own(*number).is_none()) {
@@ -224,7 +224,7 @@ fn placed<'a>(places: &'a Places, (number, columns, values): &'a Row) -> impl It
     columns.iter().zip(values).map(move |(&column, &value)| (row, places.at(column), value))
 }
 
-/// What a complete row has beside what the bulk of this rank has of it.
+/// Entries of a complete row that the bulk of this rank lacks.
 fn complement(bulk: &Csr, mut row: Vec<Entry>) -> Vec<Entry> {
     let Some(&(at, ..)) = row.first() else { return row };
     row.sort_by_key(|entry| entry.1);

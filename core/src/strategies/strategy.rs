@@ -1,4 +1,4 @@
-//! What the stage asks of the solution of a step, whether it iterates or not.
+//! Interface between the stage and the solution of a step, whether it iterates or not.
 
 use zelus_linear_algebra::State;
 
@@ -31,7 +31,7 @@ pub trait SolutionStrategy: Send {
         None
     }
 
-    /// What to try when steps fail.
+    /// Remedy when steps fail.
     fn remedy(&self) -> &'static str {
         "a shorter \"time_step\", more \"max_iteration\", the strategy \"line_search\", at a limit load \"arc_length\""
     }
@@ -72,7 +72,7 @@ pub trait SolutionStrategy: Send {
     /// The system of the last step.
     fn assembler(&self) -> &Assembler;
 
-    /// What it remembers between steps, for the file of a saved run; one that is made of another passes on that of the other.
+    /// State between steps, for the file of a saved run; a strategy that wraps another passes on the other's.
     fn state(&self) -> Option<Box<dyn State>>;
 
     /// Takes up a saved state; `part` and `system` have theirs already.
@@ -99,8 +99,8 @@ pub trait SolutionStrategy: Send {
 
 /// A balance with its tangent.
 pub trait Linearized {
-    /// What is out of balance in the present state, a number an unknown of `system`; blocks of interactions may be others than those of
-    /// the tangent. Collective.
+    /// Out-of-balance residual in the present state, a number an unknown of `system`; blocks of interactions may be others than those
+    /// of the tangent. Collective.
     ///
     /// # Errors
     /// An entity that cannot be computed.
@@ -131,7 +131,7 @@ pub(super) fn after_prediction(part: &mut ModelPart, interactions: &mut [Box<dyn
     interactions.iter_mut().filter_map(|i| i.active_set()).try_for_each(|set| set.after_prediction(part))
 }
 
-/// What may be added to the diagonal of interactions whose constraints are redundant.
+/// Term for the diagonal of interactions whose constraints are redundant.
 pub(super) fn relaxation(interactions: &[Box<dyn Interaction>]) -> Option<f64> {
     interactions.iter().filter_map(|interaction| interaction.coupling()).find_map(|coupling| coupling.relaxation())
 }

@@ -95,7 +95,7 @@ impl Stage {
         }
     }
 
-    /// What it is going to do, as the first of the `left` stages of `all`.
+    /// Plan of this stage, the first of the `left` remaining stages of `all`.
     pub(super) fn plan(&self, left: usize, all: usize) -> Plan {
         let [start, end] = self.schedule.interval();
         Plan { stage: all - left + 1, stages: all, start, end, steps: self.schedule.stepping.count(start, end) }
@@ -106,7 +106,7 @@ impl Stage {
         &self.root
     }
 
-    /// What computes on that part.
+    /// System that computes on that part.
     pub(super) fn system(&self) -> &System {
         &self.system
     }
@@ -138,7 +138,7 @@ impl Stage {
         self.processes.iter_mut().filter_map(|process| process.saves(model)).collect()
     }
 
-    /// What it remembers between steps.
+    /// State between steps.
     pub(super) fn state(&self) -> SavedStage {
         SavedStage {
             begun: self.begun,

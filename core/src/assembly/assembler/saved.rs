@@ -1,4 +1,4 @@
-//! What the assembler remembers between steps: what tells whether the next system is the last one.
+//! State of the assembler between steps: it tells whether the next system equals the last one.
 
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +30,7 @@ impl AssemblerState {
 }
 
 impl Assembler {
-    /// What it remembers between steps.
+    /// State between steps.
     pub fn state(&self) -> AssemblerState {
         let (reduced_graph, tangent_key) = self.bulk.origin();
         AssemblerState {

@@ -1,4 +1,4 @@
-//! What a residual is made of: the forces of loads, and what interactions exchange.
+//! Parts of a residual: the forces of loads, and the forces that interactions exchange.
 
 use super::Assembler;
 use super::coupling_tangent::blocks_of;
@@ -8,7 +8,7 @@ use crate::diagnostics::Result;
 use crate::entities::{Tangent, Want};
 use crate::model::ModelPart;
 
-/// What an entity between two bodies does to one unknown.
+/// Force of an entity between two bodies on one unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Push {
     /// Place of the interaction.

@@ -1,4 +1,4 @@
-//! What an mdpa file says, without interpretation.
+//! Contents of an mdpa file, without interpretation.
 
 use std::path::PathBuf;
 

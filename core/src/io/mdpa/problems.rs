@@ -1,4 +1,4 @@
-//! What is wrong with a mesh file, line by line.
+//! Faults of a mesh file, line by line.
 
 use std::path::Path;
 

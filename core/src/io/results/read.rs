@@ -10,7 +10,7 @@ use super::dataset::{Column, Dataset, Values};
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::geometry::Shape;
 
-/// What stands between the tags of a file and its arrays.
+/// Text between the tags of a file and its arrays.
 const MARK: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
 /// Most bytes of an array: what is damaged must not fill the memory.
 const MOST: u64 = 1 << 34;

@@ -39,9 +39,9 @@ pub struct SpaceTime {
 pub struct ExpressionError {
     /// Character of the text, from 1.
     pub column: u32,
-    /// What is the case there.
+    /// The fact.
     pub fact: String,
-    /// What to do about it.
+    /// The remedy.
     pub remedy: Option<String>,
 }
 
@@ -218,7 +218,7 @@ impl<'de> serde::Deserialize<'de> for Expression {
     }
 }
 
-/// What of a long text stands around a column, which counts from 1.
+/// Excerpt of a long text around a column, which counts from 1.
 fn excerpt(text: &str, column: u32) -> String {
     const REACH: usize = 60;
     let [length, at] = [text.chars().count(), column as usize - 1];

@@ -77,7 +77,7 @@ pub trait OutputFormat: Send {
         Ok(())
     }
 
-    /// What it remembers between pictures, for the file of a saved run.
+    /// State between pictures, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
@@ -90,7 +90,7 @@ pub trait OutputFormat: Send {
         Ok(())
     }
 
-    /// What a user would open; the folder unless the format has files that name the others.
+    /// Files that a user opens; the folder unless the format has files that name the others.
     fn outputs(&self, folder: &Path) -> Vec<PathBuf> {
         vec![folder.to_owned()]
     }

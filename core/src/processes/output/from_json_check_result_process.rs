@@ -101,7 +101,7 @@ impl FromJsonCheck {
         (!points.is_empty()).then(|| Table::new(points).value(time))
     }
 
-    /// What differs on any rank; collective.
+    /// Differences on any rank; collective.
     fn compare(&self, part: &ModelPart, system: &System, selection: &SubPart) -> Differences {
         let mut found = Differences::default();
         let time = part.info.time;

@@ -99,7 +99,7 @@ pub(super) fn means(
     Column::real(&quantity.name, components, values)
 }
 
-/// What a Gauss point counts by in means.
+/// Weight of a Gauss point in means.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Share {
     /// The volume it stands for.

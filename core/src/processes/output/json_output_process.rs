@@ -39,7 +39,7 @@ struct JsonOutput {
     last_write: Option<Instant>,
 }
 
-/// What has been sampled so far.
+/// Samples so far.
 #[derive(Clone, Default, Serialize, Deserialize)]
 struct Histories {
     /// Nodes of this rank that have passed the filter, ascending.

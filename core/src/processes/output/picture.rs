@@ -1,4 +1,4 @@
-//! What a picture of a model part shows: settings shared by the VTK and VTU processes, and the data they ask for.
+//! Contents of a picture of a model part: settings shared by the VTK and VTU processes, and the data they ask for.
 
 use super::gauss::{self, Share};
 use super::place::one_of;
@@ -161,7 +161,7 @@ impl Picture {
         Ok(out)
     }
 
-    /// What is wrong with its lists, once all unknowns are known.
+    /// Faults of its lists, once all unknowns are known.
     pub(super) fn check(&self, part: &ModelPart, system: &System) -> Vec<Diagnostic> {
         let Some(place) = &self.refuses else { return Vec::new() };
         lists::check(part, system, place, &self.history, &self.values, &self.extrapolated)

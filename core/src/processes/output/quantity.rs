@@ -144,8 +144,8 @@ fn computed(name: &str) -> Result<(), Diagnostic> {
 
 const NOT_COMPUTED: &str = "not-computed";
 
-/// What `make` makes of the names of a list; problems go to `report`. With `leave_out`, what is known and has no values is
-/// left out with a warning.
+/// Applies `make` to the names of a list; problems go to `report`. With `leave_out`, what is known and has no values is left out with a
+/// warning.
 fn each<T>(
     settings: &Settings,
     key: &str,

@@ -14,7 +14,7 @@ use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
 
-/// What the interval is counted in.
+/// Unit of the interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Unit {
     Time,

@@ -27,7 +27,7 @@ const STATES: &str = "interactions: states";
 /// Share of the tolerances that a linear solve may leave.
 const LEFT: f64 = 0.01;
 
-/// What the iterations of a step hand on to each other.
+/// Data that the iterations of a step hand on to each other.
 struct Step {
     /// Nodes that move before the mesh, see [`NewtonRaphson::moved_first`].
     moved_first: Option<Vec<u32>>,
@@ -39,7 +39,7 @@ struct Step {
     residual: Vec<f64>,
     references: References,
     records: Vec<IterationRecord>,
-    /// How multipliers may give way where constraints repeat each other, and how they do since one system was singular.
+    /// Regularisation of multipliers where constraints are redundant: the permitted amount, and the amount since a system was singular.
     relaxation: Option<f64>,
     relaxed: Option<f64>,
     /// Why the last search in a converged state found more.
@@ -176,7 +176,7 @@ impl NewtonRaphson {
         let condition =
             if part.info.solver.condition_number { self.condition_number(part, system, monitor) } else { None };
         monitor.phase("states and residual");
-        // What is prescribed must be taken whole.
+        // Prescribed increments must be applied in full.
         let is_still = !has_motion(&part.ranks, &step.prescribed);
         let mut increment = self.take(&solved, step, part, system)?;
         if let Some(what) = self.first_infinite(part, system, &step.residual) {
@@ -299,7 +299,7 @@ impl NewtonRaphson {
         self.solve(part, system, &rhs)
     }
 
-    /// What a solve without a result means for the step.
+    /// Outcome of the step after a solve without a result.
     ///
     /// # Errors
     /// One that no shorter step would mend.

@@ -1,4 +1,4 @@
-//! What the residuals of a step are measured by: those at its start, as far as forces of its size explain them.
+//! Reference norms of the relative residual criterion: residuals at the start of the step, as far as forces of their size explain them.
 
 use super::super::criterion::{Block, norms};
 use super::NewtonRaphson;

@@ -142,7 +142,7 @@ impl NewtonRaphson {
         increment
     }
 
-    /// What constrained unknowns lack to obey their constraints at the present values of the others.
+    /// Increment with which constrained unknowns obey their constraints at the present values of the others.
     pub(super) fn constraint_increment(&self, part: &mut ModelPart, system: &System) -> Vec<f64> {
         let before = self.assembler.values(part, system);
         impose_constraints(part);
