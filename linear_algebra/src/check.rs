@@ -1,4 +1,4 @@
-//! What every engine does before and after its own work: look at the input, refine and measure the answer.
+//! Steps of every engine before and after its own work: check of the input, refinement and check of the solution.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 

@@ -1,4 +1,4 @@
-//! Vectors that several processes share: each has items of its own and copies, *ghosts*, of items of others.
+//! Vectors that several ranks share: each has items of its own and copies, *ghosts*, of items of others.
 
 use std::fmt;
 use std::sync::Arc;
@@ -13,7 +13,7 @@ pub trait Processes: Send + Sync {
     /// Number of processes.
     fn size(&self) -> usize;
 
-    /// What every process gives, one after another; each gives as many numbers.
+    /// The numbers of every rank, one after another; each gives as many numbers.
     fn gather(&self, own: &[f64]) -> Vec<f64>;
 
     /// As [`Processes::exchange_numbers`], where `counts` says how many come from each process.

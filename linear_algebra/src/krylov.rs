@@ -55,7 +55,7 @@ pub(crate) struct KrylovSolver {
     refused: Option<NotCondensable>,
 }
 
-/// What an iteration gave and what it took.
+/// Result and cost of an iteration.
 struct Iterated {
     progress: Progress,
     method: Method,

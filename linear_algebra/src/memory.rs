@@ -107,7 +107,7 @@ fn folders(groups: &str) -> Vec<PathBuf> {
     found
 }
 
-/// What a control group leaves; pages of files that it can give back count as free.
+/// Free memory of a control group; pages of files that it can give back count as free.
 fn free_of_group(folder: &Path) -> Option<u64> {
     let number = |names: [&str; 2]| {
         let texts = names.into_iter().filter_map(|name| fs::read_to_string(folder.join(name)).ok());

@@ -22,12 +22,12 @@ use crate::vector;
 
 /// Directions kept before a restart.
 const RESTART: usize = 80;
-/// Iterations from which on it pays to make what the constraints leave, where the hierarchy is one of an earlier matrix: of a new bulk,
-/// and of one that only has other constraints, most of whose rows are known.
+/// Iterations from which on it pays to make the reduced system, where the hierarchy is one of an earlier matrix: of a new bulk, and of
+/// one that only has other constraints, most of whose rows are known.
 const PAYS: [f64; 2] = [10.0, 3.0];
 /// Share of a residual that a solve leaves at least: beyond it rounding counts.
 const REACHED: f64 = 1e-4;
-/// What a solve leaves at most.
+/// Largest share of a residual that a solve may leave.
 const COARSEST_AIM: f64 = 0.5;
 /// Accuracy of a solve, as a share of what the one before was worth to the whole system: beyond it the constraints that the blocks
 /// leave out count.
@@ -53,10 +53,10 @@ const YIELDS_UP_TO: usize = 70_000;
 #[derive(Clone, Serialize, Deserialize)]
 struct Hierarchy {
     levels: Arc<Multigrid>,
-    /// What their matrix was divided by.
+    /// Divisor of their matrix.
     size: f64,
     bulk_graph: u64,
-    /// What the nodes with multipliers prescribed.
+    /// Motions that the nodes with multipliers prescribed.
     prescribed: Vec<(u32, u32)>,
     /// Whether the matrix has changed since.
     is_old: bool,
@@ -96,7 +96,7 @@ pub(crate) struct MultigridSolver {
     runs: Option<(u64, Runs)>,
     hierarchy: Option<Hierarchy>,
     learnt: Learnt,
-    /// The iterations on the whole system, and on what the constraints leave.
+    /// The iterations on the whole system, and on the reduced system.
     outer: Gmres<f64>,
     inner: Gmres<f32>,
     /// Relative residual to reach.
@@ -104,7 +104,7 @@ pub(crate) struct MultigridSolver {
     stand_in: DirectSolver,
 }
 
-/// What the engine has learnt.
+/// State that the engine keeps between solves.
 #[derive(Clone, Default, Serialize, Deserialize)]
 struct Learnt {
     answers: Answers,
@@ -143,7 +143,7 @@ impl MultigridSolver {
         Self { settings, constrained, left, seen, runs, hierarchy, learnt, outer, inner, tolerance, stand_in }
     }
 
-    /// Solves a system that several processes share; one that does not does less than the rest, so all agree on errors.
+    /// Solves a system that several ranks share; one that does not does less than the rest, so all agree on errors.
     fn solve_shared(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
         let checked = check::input(system, rhs, x).and_then(|()| check::empty_rows(system));
         if system.ghosts().any(checked.is_err()) {
@@ -226,12 +226,12 @@ impl MultigridSolver {
         let scales = &ghosts.narrow(&constrained.row_scales);
         let scale = |r: &mut [f64]| vector::scale_each(scales, r);
         let (mut b, mut start) = (ghosts.narrow(rhs), ghosts.narrow(x));
-        // Of several processes, none that one owns is held.
+        // Over several ranks no equation that a rank owns is inactive.
         if system.shared.is_none() {
             system.clear_held(&mut b);
         }
         scale(&mut b);
-        // What makes a product of one with the bulk.
+        // Completes a product with the bulk to one with the whole system.
         let complete = |x: &[f64], y: &mut [f64]| {
             system.add_coupling_product(x, y);
             system.clear_held(y);

@@ -5,7 +5,7 @@ use crate::csr::Csr;
 use crate::state::{State, WrongState};
 use crate::system::{Layout, System};
 
-/// What one solve did.
+/// Report of one solve.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SolveReport {
     /// The engine that gave the answer.
@@ -90,7 +90,7 @@ pub trait LinearSolver: Send {
     /// without past that takes up the state gives the same digits from here on. Called as each step of a run begins.
     fn forget(&mut self) {}
 
-    /// What it has learnt from the solves so far; one that passes solves on passes these on, too.
+    /// State from the solves so far; a solver that wraps another passes on the other's.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
@@ -190,7 +190,7 @@ pub struct KrylovSettings {
     pub iterations: usize,
     /// The preconditioner.
     pub preconditioner: Preconditioner,
-    /// What is done with systems that have multipliers.
+    /// Treatment of systems that have multipliers.
     pub multipliers: Multipliers,
 }
 
@@ -205,7 +205,7 @@ impl Default for KrylovSettings {
     }
 }
 
-/// What a Krylov engine does with a system that has multipliers.
+/// Treatment of multipliers by a Krylov engine.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Multipliers {
     /// It leaves the system to the direct engine.

@@ -1,18 +1,18 @@
-//! What something remembers between the steps of a run, as it stands in a file.
+//! State that an object keeps between the steps of a run, as it stands in a file.
 
 use std::any::{Any, type_name};
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-/// What a participant of a run, as a solver, remembers beside the fields of the model.
+/// State of a participant of a run, e.g. a solver, beside the fields of the model.
 ///
 /// Each type of participant states its own in its own file: a type that serde writes and reads, with
 /// `#[typetag::serde] impl State for …`, whose name tags it in the file.
 #[typetag::serde]
 pub trait State: Any + Send + Sync {
-    /// Shows what it holds of nodes and unknowns to a carrier, which takes it to other ranks, and drops what is cheap to make
-    /// again and belongs to the ranks it was made on. What it shows must not depend on which of the ranks it is.
+    /// Shows what it holds of nodes and unknowns to a carrier, which takes it to other ranks, and drops what is cheap to make again and
+    /// belongs to the ranks it was made on. The sequence of its calls must not depend on which of the ranks it is.
     fn carry(&mut self, carrier: &mut dyn Carrier);
 }
 

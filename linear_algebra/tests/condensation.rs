@@ -8,7 +8,7 @@ use zelus_linear_algebra::{
     Multipliers, NotCondensable, Preconditioner, SolveError, Symmetry, System, create,
 };
 
-/// What the multipliers of a slave node say.
+/// Contact state, hence the equations of the multipliers of a slave node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     /// One multiplier along a normal.
@@ -340,7 +340,7 @@ fn sets_that_say_the_same_twice_are_refused_by_name() {
     let refused = Condensation::new(&sample.system(), &CondensationSettings::default(), 1).expect_err("undetermined");
     let NotCondensable::Undetermined { multiplier, share } = refused else { panic!("{refused:?}") };
     assert!(multiplier + 1 == sample.layout.equations() && share < 1e-12, "{refused:?}");
-    // Masters can give way, so the whole system is regular: the direct engine serves, and says so.
+    // Masters can move, so the whole system is regular: the direct engine serves, and says so.
     let b = rhs(sample.system().equations());
     let mut x = vec![0.0; b.len()];
     let multigrid = MultigridSettings { least: [0; 2], ..MultigridSettings::default() };

@@ -10,7 +10,7 @@ use crate::dense_lu;
 /// Pivots of the scaled `Q₂ᵀ H` below which the equations are left as they are, but for their size.
 const REGULAR: f64 = 1e-6;
 
-/// What replaces the equations of a node.
+/// Elimination of the equations of a node, and the recovery of its unknowns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NodeElimination {
     /// `R⁻¹ Q₁ᵀ` by rows, m × s: multipliers out of the equations.

@@ -81,7 +81,7 @@ pub(crate) struct DirectSolver {
     seconds_numeric: f64,
 }
 
-/// What the engine has learnt.
+/// State that the engine keeps between solves.
 #[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(remote = "Self")]
 struct DirectState {

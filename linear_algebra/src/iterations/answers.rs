@@ -43,7 +43,7 @@ impl Answer {
 /// The latest answers of a solver.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Answers {
-    /// What they are answers of.
+    /// Graph of the matrix that they are solutions of.
     graph: u64,
     latest: VecDeque<Answer>,
 }
@@ -142,7 +142,7 @@ mod tests {
         assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-12), "{x:?}");
         let rest = [0.0, 0.0, 0.0, 0.8];
         assert!(left.iter().zip(rest).all(|(left, rest)| (left - rest).abs() < 1e-12), "{left:?}");
-        // What is known is not made again, unless the matrix is another.
+        // A known product is not computed again, unless the matrix is another.
         let known = |answer: &mut Answer, y: &mut [f64]| {
             y.copy_from_slice(answer.product(1, |_, _| unreachable!("the product is known")));
         };

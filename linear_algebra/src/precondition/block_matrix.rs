@@ -149,7 +149,7 @@ pub(super) const NOTHING_EARLIER: Option<(&BlockMatrix, fn(usize) -> bool)> = No
 /// The work on the product of a part: its first row, the product, and the numbers at its rows.
 type WithProduct<'a> = &'a (dyn Fn(usize, &[f32], &mut [f32]) + Sync);
 
-/// What a product does to what stands where it is written.
+/// Operation of a product on the vector that it writes to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Into {
     /// It is replaced.

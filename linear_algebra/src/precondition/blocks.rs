@@ -1,4 +1,4 @@
-//! What is left of a system once its multipliers are gone: a matrix of node blocks in single precision, and solves with it.
+//! The reduced system without multipliers: a matrix of node blocks in single precision, and solves with it.
 //!
 //! Vectors are in single precision, too, so an iteration moves a third of the bytes of one with the system itself; what rounding
 //! leaves is corrected by the next solve, for a residual in double precision.
@@ -17,7 +17,7 @@ const MOST: usize = 80;
 /// A matrix of blocks, own rows.
 pub(crate) struct Blocks {
     pub(super) matrix: Arc<BlockMatrix>,
-    /// What the matrix was divided by.
+    /// Divisor of the matrix.
     pub(crate) size: f64,
     /// Which rows are those of the bulk.
     pub(super) of_bulk: Vec<bool>,

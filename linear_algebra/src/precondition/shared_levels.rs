@@ -1,5 +1,5 @@
-//! What processes that share a level of multigrid need of each other: rows of the prolongation, and rows of the coarse
-//! matrix that are made where others own them.
+//! Exchange between ranks that share a level of multigrid: rows of the prolongation, and rows of the coarse matrix that are made where
+//! others own them.
 
 use std::collections::BTreeMap;
 

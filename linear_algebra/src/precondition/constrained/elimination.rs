@@ -14,7 +14,7 @@ const PRESCRIBES: f64 = 0.03;
 /// Share of a column that must be left for it to be independent of those before it.
 const INDEPENDENT: f64 = 1e-8;
 
-/// What the multipliers of a node do, by rows.
+/// Action of the multipliers of a node, by rows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct GroupElimination {
     /// Prescribed motions, a.

@@ -154,7 +154,7 @@ impl Constrained {
         for i in (0..layout.equations()).filter(|&i| is_here(i)) {
             of_node.entry(layout.node[i]).or_default().push(i as u32);
         }
-        // What follows from conditions alone, what nothing here determines, and the group of the rest.
+        // Multipliers that conditions alone determine, multipliers that nothing here determines, and the group of the rest.
         type Found = (Vec<(u32, f64, f64)>, Vec<u32>, Option<Result<Group, usize>>);
         let find = |(node, multipliers): &(u32, Vec<u32>)| -> Found {
             let own: Vec<u32> = match block[*node as usize] {
@@ -196,7 +196,7 @@ impl Constrained {
         }
         for m in lone {
             if self.ghosts.processes().is_some() {
-                // What carries it depends on what carries others, which may be elsewhere.
+                // Its carrier depends on the carriers of others, which may be on other ranks.
                 return Err(m as usize);
             }
             let (master, action) = self.carrier(system, m).ok_or(m as usize)?;
@@ -264,7 +264,7 @@ impl Constrained {
         })
     }
 
-    /// What links groups with the rest: unknowns of masters in conditions, multipliers in the equations of masters.
+    /// Links between groups and the rest: unknowns of masters in conditions, multipliers in the equations of masters.
     fn find_neighbours(&mut self, system: &System<'_>) {
         let is_own = |e: usize| self.group_of[e] != NONE && !system.layout.multiplier[e];
         let of_group = |group: &Group| {
@@ -313,7 +313,7 @@ impl Constrained {
         (self.loads, self.beside) = (loads, beside);
     }
 
-    /// What the unknowns of groups follow.
+    /// Unknowns that the unknowns of groups follow.
     fn find_follows(&mut self) {
         let (place, w) = (&self.place, self.width);
         parallel::each_mut(&mut self.groups, 16, |_, group| {
@@ -338,7 +338,7 @@ impl Constrained {
         });
     }
 
-    /// What each group of this process prescribes: its first unknown and how many motions.
+    /// Motions prescribed by each group of this rank: its first unknown and how many motions.
     pub(crate) fn prescribed(&self) -> Vec<(u32, u32)> {
         let is_own = self.ghosts.is_own();
         let own = self.groups.iter().filter(|group| is_own[group.own[0] as usize]);
