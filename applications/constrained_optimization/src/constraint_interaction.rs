@@ -22,7 +22,7 @@ pub struct ConstraintInteraction<M: Method> {
     saved: Vec<Vec<ConstraintState>>,
 }
 
-/// What constraints remember between steps, as it stands in a saved run: their states, by block.
+/// State of the constraints between steps, as it stands in a saved run: by block.
 #[derive(Serialize, Deserialize)]
 struct SavedConstraints(Vec<Vec<ConstraintState>>);
 

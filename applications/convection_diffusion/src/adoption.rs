@@ -1,4 +1,4 @@
-//! What a solver of heat makes of a mesh: its own elements and faces, turned the right way, and materials at nodes.
+//! Mesh of a solver of heat: its own elements and faces, turned the right way, and materials at nodes.
 
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
 use zelus_core::entities::find_kind;

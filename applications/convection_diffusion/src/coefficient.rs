@@ -11,7 +11,7 @@ pub struct Coefficient {
     own: Own,
 }
 
-/// What the material of the element says.
+/// Values from the material of the element.
 #[derive(Debug, Clone)]
 enum Own {
     Constant(f64),
@@ -65,8 +65,8 @@ impl Coefficient {
         matches!(self.own, Own::Missing)
     }
 
-    /// What holds in one element: values of nodes where a process has set one that differs from what materials wrote there, or
-    /// where the material says nothing.
+    /// The coefficient in one element: values of nodes where a process has set one that differs from the material's, or where the
+    /// material gives none.
     pub fn in_element<const NODES: usize>(
         &self,
         entity: &Gather<'_, NODES>,

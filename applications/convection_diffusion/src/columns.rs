@@ -24,7 +24,7 @@ const USUAL: [(&str, &str, bool); 8] = [
 /// Names of the columns; `None` where the deck switches one off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Columns {
-    /// What is solved for.
+    /// Unknown.
     pub unknown: ScalarVariable,
     /// Mass per volume; 1 where switched off.
     pub density: Option<&'static str>,

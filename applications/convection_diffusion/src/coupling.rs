@@ -179,7 +179,7 @@ impl Coupled {
     ) -> Result<StepRecord> {
         let sweeps = Sweeps::new(self.heat.clone(), goal, part, start);
         if system.interactions.iter_mut().any(|interaction| interaction.active_set().is_some()) {
-            // What contact keeps of the step must not begin anew: its iteration goes on.
+            // The contact state of the step must not begin anew: its iteration goes on.
             system.interactions.push(Box::new(sweeps));
             let record = self.structure.solve_step(part, system, monitor);
             system.interactions.pop();

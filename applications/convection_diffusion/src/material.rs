@@ -1,4 +1,4 @@
-//! What the elements of one block are made of, as heat sees it.
+//! Thermal material of the elements of one block.
 
 use zelus_core::entities::{BlockRequest, Gather, StepView};
 use zelus_core::model::Properties;

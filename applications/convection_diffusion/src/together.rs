@@ -23,7 +23,7 @@ pub(crate) struct Together {
     heat: Arc<Mutex<Heat>>,
     /// Temperatures at the start of the step, prescribed ones as they are at its end.
     start: Vec<f64>,
-    /// What is out of balance in the state that differences refer to.
+    /// Out-of-balance residual in the state that differences refer to.
     referred: Vec<f64>,
 }
 
@@ -35,7 +35,7 @@ impl Together {
 }
 
 impl Heat {
-    /// What is out of balance in the present state of the structure.
+    /// Out-of-balance residual in the present state of the structure.
     fn out_of_balance(&mut self, part: &mut ModelPart, elements: &[Box<dyn EntityBlock>]) -> Result<Vec<f64>> {
         self.plastic.take(part, elements);
         for interaction in &mut self.system.interactions {

@@ -12,7 +12,7 @@ pub const SETTINGS: &str = "coupling_settings";
 const TOLERANCE: &str = "COUPLING_TOLERANCE";
 const MOST: &str = "COUPLING_MAX_ITERATION";
 const TOGETHER: &str = "COUPLING_TOGETHER";
-/// What holds where a deck says nothing.
+/// Tolerance and number of iterations where a deck gives none.
 const USUAL: Goal = Goal { tolerance: 1e-6, most: 30 };
 
 /// How both are solved.
@@ -20,7 +20,7 @@ const USUAL: Goal = Goal { tolerance: 1e-6, most: 30 };
 pub(crate) enum Way {
     /// Once each, heat first.
     Sequential,
-    /// By turns until the temperatures stay.
+    /// Staggered: alternately until the temperatures stay.
     Staggered(Goal),
     /// In one Newton's iteration.
     Monolithic,

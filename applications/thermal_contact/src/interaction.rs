@@ -32,7 +32,7 @@ const STEM: &str = "ContactConductanceCondition";
 
 register_pair_conditions! { "ContactConductanceCondition", "heat between two facets that face each other" }
 
-/// What a deck chooses.
+/// Settings of a deck.
 pub struct Chosen {
     /// Between which surfaces.
     pub surfaces: FacingSurfaces,

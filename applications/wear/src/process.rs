@@ -41,7 +41,7 @@ impl WearProcess {
         self.laws[side].iter().map(|law| law.depth(rubbing)).sum()
     }
 
-    /// What the sides of an interface lose, and the warning of a step that is too long.
+    /// Losses of the sides of an interface, and the warning of a step that is too long.
     fn wear(&self, part: &ModelPart, interface: usize) -> ([Side; 2], Option<Diagnostic>) {
         let points = self.reading.points(part, interface);
         let mut sides = SIDES.map(|role| Side::new(&self.reading.surfaces.interfaces()[interface], role));

@@ -88,7 +88,7 @@ impl Side {
     }
 }
 
-/// What the facets around a node have, weighted by its φ, or by its N.
+/// Sums over the facets around a node, weighted by its φ, or by its N.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     area: f64,

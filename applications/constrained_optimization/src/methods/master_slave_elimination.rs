@@ -39,7 +39,7 @@ fn force(springs: &System, part: &ModelPart, node: u32) -> Result<f64> {
     Ok(if part.share.is_some() { part.ranks.total(own) } else { own })
 }
 
-/// What the elements of this rank exert.
+/// Force of the elements of this rank on the node.
 fn own_force(springs: &System, view: &StepView<'_>, node: u32) -> Result<f64> {
     let mut sum = 0.0;
     let mut local = LocalSystems::default();

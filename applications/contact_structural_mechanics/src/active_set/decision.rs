@@ -194,7 +194,7 @@ impl<'a> Rules<'a> {
                 let free = std::array::from_fn(|c| if along(c) { 0.0 } else { kept[c] });
                 add(add(normal_part, free), scale(slip, stiffness / parameters.scale_factor))
             }
-            // What slides, slides along what is free.
+            // A sliding node slides along the directions that are free.
             Multiplier::Vector(_) => {
                 add(scale(normal, dot(whole, normal)), along_free_tangents(tangential(whole, normal), normal, held))
             }

@@ -1,4 +1,4 @@
-//! Slave nodes that supports hold together with what they face, and what becomes of their multipliers.
+//! Supports of slave nodes together with the master surface opposite them, and the constrained multipliers there.
 
 use std::collections::{BTreeMap, BTreeSet};
 

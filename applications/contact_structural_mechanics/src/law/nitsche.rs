@@ -8,12 +8,12 @@
 //! r = τ − (t − σ n) is what the tractions of a mesh lack; r° is that of the last accepted state, averaged at the nodes and
 //! turned with the facet. Without it bodies that stick would slip by it in every step.
 //!
-//! The force f = p n + τ acts on the slave, −f on the master, and the slave's element has the consistent term
-//! −θ/γ ∫ (f − f°)·δt, where f° = t with friction and σ n without. θ = 1 is symmetric, 0 incomplete, −1 skew. The term is
-//! there too where p = 0; beside the master there is none, and no force (Chouly, Hild and Renard 2015). M is the stiffness of
-//! the material across the face, A the face, V the volume of the element, all in the initial state: γ = M A/V is what the
-//! trace inequality of an element of constant stress asks of the symmetric variant; of one of linear stress in d dimensions it asks
-//! 2 (d + 1)/d times as much (Warburton and Hesthaven 2003), which M has of faces of second order.
+//! The force f = p n + τ acts on the slave, −f on the master, and the slave's element has the consistent term −θ/γ ∫ (f − f°)·δt, where
+//! f° = t with friction and σ n without. θ = 1 is symmetric, 0 incomplete, −1 skew. The term is there too where p = 0; at the master's
+//! edge, where no master is opposite, there is none, and no force (Chouly, Hild and Renard 2015). M is the stiffness of the material
+//! across the face, A the face, V the volume of the element, all in the initial state: γ = M A/V is what the trace inequality of an
+//! element of constant stress asks of the symmetric variant; of one of linear stress in d dimensions it asks 2 (d + 1)/d times as much
+//! (Warburton and Hesthaven 2003), which M has of faces of second order.
 //!
 //! Tractions are those of the initial area, P·N; along the facet they are interpolated between inner points, which is exact
 //! where the element is a parallelepiped, and divided there by the change of area.

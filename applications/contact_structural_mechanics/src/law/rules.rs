@@ -85,7 +85,7 @@ pub struct SlaveNumbers {
     pub trial: [f64; 3],
     /// Unit tangent τ in which the last solve took a sliding node to slide.
     pub tangent: [f64; 3],
-    /// Stiffness c: what a gap counts with against tractions (stress by length).
+    /// Complementarity parameter c_n: the factor of a gap against tractions (stress by length).
     pub stiffness: f64,
     /// Whether supports move both sides: what slips then cannot stick, however little it is.
     pub driven: bool,

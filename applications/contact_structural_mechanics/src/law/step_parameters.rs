@@ -66,7 +66,7 @@ pub struct StepParameters {
     pub normal_variation: NormalVariation,
     /// Where gaps augment the forces of augmented Lagrangians.
     pub augmentation: Augmentation,
-    /// Whether surfaces give way by traction over penalty.
+    /// Whether contact is regularised: gap and slip have an elastic part, traction over penalty.
     pub compliant: bool,
     /// Whether the step has inertia, so that friction must make no energy.
     pub dynamic: bool,

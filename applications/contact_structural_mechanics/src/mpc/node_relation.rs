@@ -5,9 +5,9 @@
 //! are kept and a constant stress passes. On curved interfaces B x² is beside x¹ by what the facets are off the surface, and
 //! moments are off by that much.
 //!
-//! The reference program's weights are [`Weights::ByFacets`]: rows of D⁻¹ M of single pairs that have negative entries, since
-//! the node is beside the master, are left out; the rows that remain are added, each divided by the number of slave facets
-//! of the node. On unlike meshes more or fewer rows remain, and the weights do not add up to one.
+//! The reference program's weights are [`Weights::ByFacets`]: rows of D⁻¹ M of single pairs that have negative entries, since the node
+//! is at the master's edge, are left out; the rows that remain are added, each divided by the number of slave facets of the node. On
+//! unlike meshes more or fewer rows remain, and the weights do not add up to one.
 //!
 //! The offset closes the gap of the moment the relation is made. Ties keep it.
 

@@ -375,9 +375,8 @@ impl Pairing {
         self.blocks = blocks;
     }
 
-    /// Step start: keeps the operators against which slip is measured, and forgets the choices of the last step. Slivers count
-    /// where `slivers` holds and the nodes of their slave have other overlaps; a node that only slivers reach is beside the
-    /// master.
+    /// Step start: keeps the operators against which slip is measured, and forgets the choices of the last step. Slivers count where
+    /// `slivers` holds and the nodes of their slave have other overlaps; a node that only slivers reach is at the master's edge.
     pub(crate) fn begin_step(&mut self, part: &ModelPart, states: &SlaveStates, slivers: bool) {
         self.blocks.iter_mut().flat_map(|block| block.pairs_mut()).for_each(|pair| pair.choices = Choices::default());
         if slivers {

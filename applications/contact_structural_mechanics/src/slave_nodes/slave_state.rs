@@ -87,7 +87,7 @@ pub struct SlaveParameters {
 pub struct Accepted {
     /// Weighted gap.
     pub weighted_gap: f64,
-    /// Carried traction.
+    /// History traction.
     pub carried: [f64; 3],
 }
 

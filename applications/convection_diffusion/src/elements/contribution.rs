@@ -1,4 +1,4 @@
-//! What a point of an element gives to residual and tangent, from its balance.
+//! Contribution of a point of an element to residual and tangent, from its balance.
 
 use zelus_core::scalar::{Dual, Real};
 

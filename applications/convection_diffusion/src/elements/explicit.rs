@@ -39,7 +39,7 @@ pub struct Explicit<T, const NODES: usize, const DIM: usize> {
     subscales: PhantomData<fn() -> T>,
 }
 
-/// What is known of a point before its temperature.
+/// Data of a point that do not depend on its temperature.
 struct Point {
     /// k.
     conductivity: f64,

@@ -1,4 +1,4 @@
-//! What load conditions share: the kernel of distributed loads, values from the condition and its nodes, rows, thickness.
+//! Code that load conditions share: the kernel of distributed loads, values from the condition and its nodes, rows, thickness.
 
 use std::marker::PhantomData;
 

@@ -69,7 +69,7 @@ pub struct Values<const NODES: usize> {
     pub(super) theta: [f64; NODES],
 }
 
-/// What a Gauss point is made of.
+/// Material data at a Gauss point.
 pub struct Matter<'a, const DIM: usize, const S: usize> {
     /// The law.
     pub(super) law: &'a dyn ConstitutiveLaw<S>,

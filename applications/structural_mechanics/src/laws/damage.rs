@@ -138,7 +138,7 @@ impl<const S: usize, const STRESS_FREE: bool> IsotropicDamage<S, STRESS_FREE> {
         let strain = without(state.strain, in_form::<S>(free, self.poisson, STRESS_FREE));
         let d = elasticity.in_form(STRESS_FREE);
         let stress = multiply(&d, &strain);
-        // What plane strain has across the plane.
+        // Stress across the plane in plane strain.
         let across = S == 3 && !STRESS_FREE && !state.band_as_kratos;
         let mut whole: Tensor = stress_tensor(&stress);
         if across {

@@ -128,7 +128,7 @@ fn without_a_change_of_temperature_nothing_changes() {
     check_reference::<3>(PLANE_STRESS);
 }
 
-/// What is held on all sides is under a pressure 3 K α ΔT, to first order.
+/// A specimen held on all sides is under a pressure 3 K α ΔT, to first order.
 #[test]
 fn what_is_held_is_under_pressure() {
     let rise = 0.01;

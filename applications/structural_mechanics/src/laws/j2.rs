@@ -24,7 +24,7 @@ pub struct J2 {
     pub hardening: Hardening,
 }
 
-/// What the return does to a trial state.
+/// Return mapping of a trial state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Return {
     /// Growth Δ of the equivalent plastic strain.

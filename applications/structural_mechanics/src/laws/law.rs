@@ -1,4 +1,4 @@
-//! What a constitutive law is, and how an element gets the one its properties name.
+//! The trait of constitutive laws, and how an element gets the one its properties name.
 
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::model::Properties;
@@ -30,7 +30,7 @@ pub struct StrainState<'a, const S: usize> {
     pub band: f64,
     /// Whether damage counts as in Kratos.
     pub band_as_kratos: bool,
-    /// What the law remembers from the last accepted step: [`ConstitutiveLaw::history`] numbers.
+    /// History of the law at the last accepted step: [`ConstitutiveLaw::history`] numbers.
     pub history: &'a [f64],
 }
 
@@ -112,7 +112,7 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
         0
     }
 
-    /// What the law remembers after a step accepted in `state`, whose history is that before the step.
+    /// History of the law after a step accepted in `state`, whose history is that before the step.
     fn advance(&self, _state: &StrainState<'_, S>, _history: &mut [f64]) {}
 
     /// Appends a variable that the law remembers, or derives from it; whether it knows the name.
@@ -179,7 +179,7 @@ registered_kind! {
 
 /// That laws are made for `S` Voigt components.
 pub trait MakesLaw<const S: usize> {
-    /// What makes the law for them, `plane` as in [`law_of`]; `None` where it is for other elements.
+    /// Function that makes the law for them, `plane` as in [`law_of`]; `None` where it is for other elements.
     fn make(self, plane: bool) -> Option<MakeLaw<S>>;
 }
 

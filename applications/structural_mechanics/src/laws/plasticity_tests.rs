@@ -45,7 +45,7 @@ fn green<const S: usize>(f: &Tensor) -> [f64; S] {
     strain_vector(&(0.5 * (f.transpose() * f - IDENTITY)))
 }
 
-/// What is remembered after the strain, starting from `history`.
+/// History after the strain, starting from `history`.
 fn advanced<const S: usize>(law: &dyn ConstitutiveLaw<S>, strain: [f64; S], history: &[f64]) -> Vec<f64> {
     let mut next = history.to_vec();
     law.advance(&state(strain, IDENTITY, history), &mut next);

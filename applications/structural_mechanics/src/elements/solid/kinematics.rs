@@ -73,7 +73,7 @@ pub(super) fn radius<const NODES: usize>(n: &[f64; NODES], x: &[[f64; 3]; NODES]
 impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid<F, NODES, DIM, S> {
     pub(in crate::elements) const AXISYMMETRIC: bool = S == 4 && !F::MEAN_DILATATION;
 
-    /// What the formulation reads of the motion of the nodes.
+    /// Motion of the nodes, as the formulation reads it.
     pub(super) fn motion(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Motion<NODES> {
         let (material, as_kratos) = (self.material(entity), view.info.has(BANDS_AS_KRATOS));
         let width = if material.law.softens() { band::width(material.rule, &entity.initial, as_kratos) } else { 0.0 };
