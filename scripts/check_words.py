@@ -232,15 +232,16 @@ def rust_passages(path, text):
                 comment = Passage(path, "code")
                 comment.marker = marker
                 continue
-            if not body.strip() or re.match(r"\s*(?:[-*]|\d+\.|\#+|\|)\s", body) or body.startswith("     "):
+            heading = marker != "//" and re.match(r"\s*#+\s", body)
+            if not body.strip() or heading or re.match(r"\s*(?:[-*]|\d+\.|\|)\s", body) or body.startswith("     "):
                 comment = None
-            if not body.strip() or body.startswith("     "):
+            if not body.strip() or heading or body.startswith("     "):
                 continue
             if comment is None:
                 comment = Passage(path, "comment")
                 comment.marker = marker
                 passages.append(comment)
-            comment.add(line, re.sub(r"^\s*(?:[-*]|\d+\.|\#+|\|)\s", "", body))
+            comment.add(line, re.sub(r"^\s*(?:[-*]|\d+\.|\|)\s", "", body))
         elif token.group("string") or token.group("raw"):
             literal = Passage(path, "literal")
             content = token.group("stringtext") if token.group("string") else token.group("rawtext")
@@ -469,6 +470,9 @@ See [a page](gone.md), [a heading](#gone), [this one](#what-a-heading-may-say) a
 pub const A: &str = "contact finds no rest \\"here\\"";
 // The value of it. Whose second sentence
 // opens wrongly.
+///
+/// # Errors
+/// What is no number.
 pub const B: char = '"';
 /// Bodies that find
 /// no rest.
@@ -485,8 +489,9 @@ EXPECTED = {
     ("opening", "src/lib.rs", 3),
     ("banned", "src/lib.rs", 4),
     ("opening", "src/lib.rs", 5),
-    ("banned", "src/lib.rs", 8),
-    ("opening", "src/lib.rs", 10),
+    ("opening", "src/lib.rs", 9),
+    ("banned", "src/lib.rs", 11),
+    ("opening", "src/lib.rs", 13),
     ("exception", "words.txt", 1),
 }
 PLANTED_RULES = """[longest sentence]

@@ -10,7 +10,7 @@ use super::example::example;
 use super::kratos_names::{done_here, without_shape};
 use super::say::say;
 
-/// What the line of an example begins with in a file of defaults.
+/// Key of the line of an example in a file of defaults.
 const EXAMPLE: &str = "\"$example\"";
 
 /// Prints the names of one kind, or of all.

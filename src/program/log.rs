@@ -10,7 +10,7 @@ use zelus_core::{Error, Result};
 
 use super::report::check_output;
 
-/// What every log begins with.
+/// Start of every log, by which one is recognised.
 const MARK: &str = "zelus ";
 
 /// A log that grows line by line.

@@ -92,7 +92,7 @@ enum Command {
     },
     /// Print the JSON Schema of decks or of materials, by which editors complete and check them.
     Schema {
-        /// What of.
+        /// Kind of file that the schema describes.
         #[arg(value_enum, default_value_t = schema::Of::Deck)]
         of: schema::Of,
     },

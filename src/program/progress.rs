@@ -44,7 +44,7 @@ impl Progress {
         self.phase = phase;
     }
 
-    /// What is done of the stage, from 0 to 1.
+    /// Completed share of the stage, from 0 to 1.
     fn share(&self) -> f64 {
         let Some(plan) = self.plan else { return 0.0 };
         ((self.reached - plan.start) / (plan.end - plan.start)).clamp(0.0, 1.0)

@@ -20,7 +20,7 @@ use super::{changes, explain, sweep};
 /// Runs; `ran` says afterwards whether a step was made.
 ///
 /// # Errors
-/// What the deck, the system or a step that does not converge ends the run with.
+/// Faults of the deck or the system, and a step that does not converge.
 pub(super) fn run(arguments: &RunArguments, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
     let RunArguments { file, threads, like, set, resume, quiet, verbose, .. } = arguments;
     refuse_script(file)?;

@@ -9,7 +9,7 @@ use zelus_core::model::{VariableKind, variables};
 use zelus_core::parameters::{self, Defaults, Node};
 use zelus_core::registry::{self, Entry};
 
-/// What a schema is of.
+/// Kind of file that a schema describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Of {
     /// ProjectParameters.json.
@@ -188,7 +188,7 @@ fn object(entry: &Entry) -> Result<Value> {
     Ok(settings)
 }
 
-/// What may stand in place of a default.
+/// Schema of the values that may replace a default.
 fn of_node(node: &Node, path: &str, defaults: &Defaults) -> Value {
     let key = path.rsplit('.').next().unwrap_or(path);
     let mut schema = match &node.value {

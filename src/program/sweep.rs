@@ -25,7 +25,7 @@ const REPORT: &str = "report.json";
 const LOG: &str = "log.txt";
 const ROW: &str = "row.json";
 
-/// What of the largest results the table on the terminal shows.
+/// Largest results that the table on the terminal shows.
 const LOOKED_AT: [&str; 3] = ["DISPLACEMENT", "CONTACT_PRESSURE", "TEMPERATURE"];
 
 /// The study: what is run, where.
@@ -43,7 +43,7 @@ struct Ended {
     row: usize,
     code: u8,
     report: Option<RunReport>,
-    /// What the run said where it left no report.
+    /// Output of the run where it left no report.
     said: String,
     /// Whether it was done before.
     kept: bool,
@@ -126,14 +126,14 @@ impl Sweep<'_> {
         self.folder.join(format!("row_{}", row + 1))
     }
 
-    /// What `--set` is given of a row; an empty cell leaves what the deck says.
+    /// The arguments of `--set` for a row; an empty cell keeps the value of the deck.
     fn changes(&self, row: usize) -> Vec<String> {
         let cells = self.table.heads.iter().zip(&self.table.rows[row]).filter(|(_, cell)| !cell.is_empty());
         let own = cells.map(|(head, cell)| format!("{head}={cell}"));
         self.arguments.set.iter().cloned().chain(own).collect()
     }
 
-    /// What the results of a row depend on, beside its files.
+    /// Inputs on which the results of a row depend, beside its files.
     fn identity(&self, row: usize) -> Value {
         let RunArguments { file, like, .. } = self.arguments;
         json!({ "version": env!("CARGO_PKG_VERSION"), "deck": file, "like": like, "set": self.changes(row) })
@@ -224,7 +224,7 @@ impl Sweep<'_> {
         table(&columns, done)
     }
 
-    /// What of the results fits on a terminal: keys by their last word, sizes of what is looked at first.
+    /// Columns that fit on a terminal: keys by their last word, the main results first.
     fn summary(&self, done: &[Ended]) -> Table {
         let short = |head: &String| {
             let words: Vec<&str> = head.split('.').collect();

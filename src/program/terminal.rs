@@ -1,4 +1,4 @@
-//! What the program says while it runs: a line a step, a table of the iterations, a summary.
+//! Output of the program while it runs: a line a step, a table of the iterations, a summary.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};

@@ -291,7 +291,7 @@ impl SolverSettings {
     /// Lets the solver make the part what it computes on.
     ///
     /// # Errors
-    /// What of mesh or settings does not fit.
+    /// Faults of the mesh or the settings.
     pub fn adopt(&self, folder: &Path, part: &mut ModelPart, report: &mut Report) -> Result<()> {
         (self.definition.adopt)(&self.settings, part, report)?;
         self.extensions.iter().try_for_each(|(extension, own)| (extension.adopt)(own, folder, part, report))

@@ -30,7 +30,7 @@ impl Ranks {
     /// The error that was kept, if any; no later agreement knows of it.
     ///
     /// # Errors
-    /// What [`Ranks::defer`] was given.
+    /// The error that [`Ranks::defer`] was given.
     pub fn deferred(&self) -> Result<()> {
         self.deferred_error().lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
     }

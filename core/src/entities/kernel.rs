@@ -70,13 +70,13 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     /// The kernel for one block.
     ///
     /// # Errors
-    /// What the block's properties or data lack.
+    /// Properties or data that the block lacks.
     fn new(request: &BlockRequest<'_>) -> Result<Self>;
 
     /// State of an entity before the first step.
     ///
     /// # Errors
-    /// What the entity's properties lack, or a geometry that cannot be computed with.
+    /// Properties that the entity lacks, or an unusable geometry.
     fn state(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Result<Self::State, String>;
 
     /// How the tangent behaves.

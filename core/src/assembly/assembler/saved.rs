@@ -45,7 +45,7 @@ impl Assembler {
     /// Takes up what it remembered of the same part and system.
     ///
     /// # Errors
-    /// What is of another part or system.
+    /// A state of another part or system.
     pub fn resume(&mut self, part: &ModelPart, system: &System, state: AssemblerState) -> Result<()> {
         let AssemblerState { equations, stamps, reduced_graph, tangent_key, redistribution } = state;
         if !redistribution.is_of(part.nodes.len(), system.dofs.len()) {

@@ -59,7 +59,7 @@ pub fn read_vtu(path: &Path) -> Result<Dataset> {
 /// The picture that the bytes of a VTU file hold.
 ///
 /// # Errors
-/// What is wrong with them.
+/// The fault of the bytes.
 pub fn vtu_of(bytes: &[u8]) -> std::result::Result<Dataset, String> {
     let head = bytes.windows(MARK.len()).position(|window| window == MARK).ok_or("it has no appended data")?;
     let (text, data) = (String::from_utf8_lossy(&bytes[..head]), &bytes[head + MARK.len()..]);
