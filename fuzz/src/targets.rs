@@ -1,4 +1,4 @@
-//! What random bytes are given to: each reader must refuse or read them, and come back.
+//! Readers that get random bytes: each must refuse or read them, and return.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;

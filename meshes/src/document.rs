@@ -126,8 +126,8 @@ fn part(mesh: &Mesh, group: &super::mesh::Group, dimension: usize) -> SubModelPa
     out
 }
 
-/// The mesh of a document: elements, conditions and geometries become cells, sub model parts groups, those of a part
-/// `Outer.Inner` under `Outer_Inner`. What a mesh does not hold (values, properties, names) is left out.
+/// The mesh of a document: elements, conditions and geometries become cells, sub model parts groups, those of a part `Outer.Inner`
+/// under `Outer_Inner`. Contents that a mesh does not hold (values, properties, names) are left out.
 ///
 /// # Errors
 /// Names of elements, conditions and geometries that are not known.

@@ -1,4 +1,4 @@
-//! What a mesh file of another program says, whatever its format.
+//! A mesh file of another program, in a neutral form.
 
 use zelus_core::geometry::Shape;
 
@@ -23,7 +23,7 @@ pub struct Mesh {
     pub supports: Vec<Support>,
     /// Forces on nodes and pressures on faces.
     pub loads: Vec<Load>,
-    /// What a planar mesh stands for, where the file says so.
+    /// Assumption of a planar mesh (plane stress, plane strain, …), where the file names it.
     pub plane: Option<Plane>,
 }
 
@@ -140,11 +140,11 @@ pub struct Support {
 pub struct Load {
     /// The group.
     pub group: String,
-    /// What acts on it.
+    /// Kind of the load.
     pub kind: LoadKind,
 }
 
-/// What acts on a group.
+/// Load on a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LoadKind {
     /// The same force on each node.
@@ -153,7 +153,7 @@ pub enum LoadKind {
     Pressure(f64),
 }
 
-/// What a planar mesh stands for.
+/// Assumption of a planar mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Plane {
     /// A thin plate, free to change its thickness.

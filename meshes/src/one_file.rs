@@ -19,7 +19,7 @@ const STEPS: &[&str] = ENDINGS.split_at(3).0;
 
 struct OneFile {
     steps: Box<dyn OutputFormat>,
-    /// What it has written.
+    /// Files that it has written.
     files: Vec<PathBuf>,
 }
 

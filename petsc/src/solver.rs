@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-13;
 /// `‖A‖ ‖x‖ / ‖b‖` from which an answer that misses its equations shows a free motion.
 const FREE: f64 = 1e13;
 
-/// What a user chooses of the distributed solver.
+/// Settings of the distributed solver.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PetscSettings {
     /// The engine; `None` follows the rule of [`PetscEngine::choose`].
@@ -328,7 +328,7 @@ impl DistributedSolver {
         }
     }
 
-    /// What MUMPS or GAMG could not do.
+    /// Error of MUMPS or GAMG in the setup.
     fn failed_setup(&self, engine: PetscEngine, raw: &RawReport) -> SolveError {
         let detail = raw.factor_detail;
         match raw.factor_error {

@@ -10,7 +10,7 @@ use zelus::{Error, Result};
 use crate::event::Event;
 use crate::residual::Description;
 
-/// What Python answers when it is asked.
+/// Answers of Python to a question of the run.
 pub(crate) enum Answer {
     /// Go on.
     Go,
@@ -73,7 +73,7 @@ impl Lent {
 /// Where the lent model lies; empty while the run computes.
 pub(crate) type Shelf = Arc<Mutex<Option<Lent>>>;
 
-/// What lies on the shelf, also where a thread that held it has panicked.
+/// The lent model, also where a thread that held it has panicked.
 pub(crate) fn shelf(shelf: &Shelf) -> MutexGuard<'_, Option<Lent>> {
     shelf.lock().unwrap_or_else(PoisonError::into_inner)
 }

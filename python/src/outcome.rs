@@ -1,4 +1,4 @@
-//! What a run holds at its end, as arrays that take over its buffers.
+//! Results of a run at its end, as arrays that take over its buffers.
 
 use std::collections::BTreeMap;
 

@@ -17,7 +17,7 @@ use crate::residual::{self, Description, PythonResidual};
 pub(crate) struct PythonProcess {
     pub(crate) number: usize,
     pub(crate) line: Arc<Line>,
-    /// What its residual is of, where it has one.
+    /// Description of its residual, where it has one.
     pub(crate) residual: Option<Description>,
     /// Whether it was told that the loop begins; a run that goes on from a saved one does not tell.
     pub(crate) has_begun: bool,

@@ -17,7 +17,7 @@ use zelus::core::registry::Entry;
 use crate::event::Event;
 use crate::line::{Answer, Line};
 
-/// What Python says of it.
+/// Description that Python gives of the residual.
 #[derive(Debug, Clone, Deserialize)]
 pub(crate) struct Description {
     /// The part whose entities it is of.
@@ -149,7 +149,7 @@ struct Block {
     cache: Mutex<Option<Evaluated>>,
 }
 
-/// What the function gave last.
+/// Last values of the function.
 struct Evaluated {
     values: Vec<f64>,
     time: f64,

@@ -155,7 +155,7 @@ fn over() -> PyErr {
 }
 
 impl Session {
-    /// What `work` makes of the model that is lent now.
+    /// Result of `work` on the model that is lent now.
     pub(crate) fn with<T>(&self, work: impl FnOnce(&mut Lent) -> PyResult<T>) -> PyResult<T> {
         let mut lent = shelf(&self.shelf);
         let lent = lent.as_mut().ok_or_else(|| {

@@ -19,7 +19,7 @@ use crate::line::{Answer, Line};
 use crate::process::PythonProcess;
 use crate::words;
 
-/// What Python commands.
+/// Commands from Python.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Command {
     Prepare,
@@ -27,7 +27,7 @@ pub(crate) enum Command {
     Finish,
 }
 
-/// What the elements know at the end of a run, which is gone with it.
+/// Data of the elements at the end of a run, which end with it.
 pub(crate) type Last = Arc<Mutex<Option<Dataset>>>;
 
 /// Runs commands until there are none; gives the simulation back.

@@ -59,7 +59,7 @@ pub(super) fn is_structural(name: &str) -> bool {
     ["S", "STRI", "M3D", "B"].iter().any(|start| name.strip_prefix(start).is_some_and(digit))
 }
 
-/// What elements of that type have and those that come in have not, with what to do.
+/// Features of elements of that type that the imported ones lack, with what to do.
 pub(super) fn left_out(name: &str, shape: Shape) -> Option<(&'static str, &'static str)> {
     let name = name.to_ascii_uppercase();
     let letters = &name[name.rfind(|c: char| c.is_ascii_digit()).map_or(0, |last| last + 1)..];

@@ -48,7 +48,7 @@ const WITHOUT_MESH: [&str; 28] = [
 /// A label or set within an instance; the name of the instance is empty outside of all.
 pub(super) type Named = (String, String);
 
-/// What is read so far.
+/// Contents read so far.
 #[derive(Default)]
 pub(super) struct Model {
     pub mesh: Mesh,
