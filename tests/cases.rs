@@ -87,7 +87,7 @@ fn size(difference: f64) -> f64 {
     if difference.is_nan() { f64::INFINITY } else { difference }
 }
 
-/// What is wrong with a case, empty when it passes.
+/// Faults of a case, empty when it passes.
 fn run(folder: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(folder.join("case.json")).expect("case.json");
     let case: Case = match serde_json::from_str(&text) {

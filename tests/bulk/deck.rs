@@ -22,7 +22,7 @@ pub struct Deck<'a> {
     gauss: Vec<String>,
 }
 
-/// What a run leaves.
+/// Outcome of a run.
 pub struct Ran {
     json: Value,
     /// Report of the run.

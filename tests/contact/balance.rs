@@ -133,7 +133,7 @@ fn is_same(found: &[Balance], expected: &[Balance]) -> Result<(), String> {
 fn compare(name: &str, found: &Value, expected: &Value, scale: f64) -> Result<(), String> {
     match (found, expected) {
         (Value::Object(found), Value::Object(expected)) => {
-            // What is relative is a share of round-off.
+            // The relative remainder is a share of round-off.
             let mut keys = expected.iter().filter(|(key, _)| *key != "relative");
             keys.try_for_each(|(key, value)| compare(&format!("{name}.{key}"), &found[key], value, scale))
         }

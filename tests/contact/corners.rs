@@ -128,8 +128,8 @@ fn a_corner_may_be_tied_to_two_bodies() {
     close(floor, same_floor, 2e-3 * floor.abs(), "the floor");
 }
 
-/// ANALYTIC: equilibrium. What is tied to the floor and leaves the wall hangs on the floor alone; nothing is in anything, however
-/// large the load.
+/// ANALYTIC: equilibrium. A slave node that is tied to the floor and leaves the wall hangs on the floor alone; no body penetrates
+/// another, however large the load.
 #[test]
 fn a_tie_and_an_open_pair_meet_at_a_corner() {
     for kind in [FRICTIONLESS, COMPONENTS] {

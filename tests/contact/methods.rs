@@ -254,13 +254,13 @@ fn contact_that_is_asked_for_must_be_there() {
     assert!(said(&output).contains("ensure_contact"), "{}", said(&output));
 }
 
-/// What a bar of length 1 does that hits a wall: wave speed 1, density 1, speed 0.01, gap 0.001.
+/// Impact of a bar of length 1 on a wall: wave speed 1, density 1, speed 0.01, gap 0.001.
 struct Impact {
     /// Displacement of the bar's centre of mass at the end, over the exact one.
     displacement: f64,
     /// Kinetic energy at the end over that of the start.
     energy: f64,
-    /// What the program said.
+    /// Output of the program.
     said: String,
 }
 

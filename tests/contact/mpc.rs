@@ -72,7 +72,7 @@ impl Problem {
     }
 }
 
-/// What a run gives: nodes in order of their making, displacements and reactions of the last step, and iterations.
+/// Outcome of a run: nodes in order of their making, displacements and reactions of the last step, and iterations.
 struct Outcome {
     nodes: Vec<Vec3>,
     displacement: Vec<Vec3>,

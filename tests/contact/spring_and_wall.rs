@@ -11,10 +11,10 @@ struct Expected {
     deck: String,
     source: String,
     exit_code: i32,
-    /// What the program must say.
+    /// Lines that the program must print.
     says: Vec<String>,
     columns: Vec<String>,
-    /// What double precision may leave of a value or norm.
+    /// Round-off of a value or norm in double precision.
     round_off: f64,
     /// Numbers as the specification prints them.
     printed: Vec<Printed>,

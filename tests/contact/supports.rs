@@ -413,7 +413,7 @@ fn a_slave_node_at_the_origin_is_as_any_other() {
     }
 }
 
-/// What supports move on both sides slides, however little: the friction is that of Coulomb's law for any length of the slip.
+/// A node that supports move on both sides slides, however little: the friction is that of Coulomb's law for any length of the slip.
 #[test]
 fn driven_sides_slide_however_little() {
     let force = |motion: &str| {

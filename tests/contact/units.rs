@@ -13,7 +13,7 @@ use std::path::Path;
 
 const DECK: &str = "ProjectParameters.json";
 
-/// What lengths and stresses are multiplied by.
+/// Factors of lengths and stresses.
 const UNITS: [(f64, f64); 6] = [(1e3, 1e-6), (1e3, 1.0), (1e-3, 1e6), (1e6, 1.0), (1.0, 1e6), (1.0, 1e-6)];
 
 /// Difference allowed, relative to the largest value of the quantity: coordinates are rounded anew.
@@ -161,7 +161,7 @@ impl Deck {
         Ok((iterations, values(folder.path())))
     }
 
-    /// What the units change, in words.
+    /// Effects of the units, in words.
     fn problems(&self) -> Vec<String> {
         let (iterations, values) = match self.outcome(1.0, 1.0) {
             Ok((iterations, values)) if !values.is_empty() => (iterations, values),

@@ -64,8 +64,7 @@ pub fn outcome(folder: &Path, before: &[std::path::PathBuf]) -> (BTreeMap<String
     (found, steps.map(|step| step["iterations"].as_array().map_or(0, Vec::len)).collect())
 }
 
-/// What is left of weighted gaps that are all closed: the round-off of positions in blocks of unit size, which differs between
-/// machines.
+/// Bound of the weighted gaps of closed contact: the round-off of positions in blocks of unit size, which differs between machines.
 const CLOSED_GAP: f64 = 1e-15;
 
 /// Holds `found` to what is expected, within `tolerance` of the largest value of each quantity; gaps that are all closed,

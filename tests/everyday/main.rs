@@ -180,7 +180,7 @@ fn surfaces_end_within_facets() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// What touches by a billionth of its size at the origin is known as well as what lies around it: gaps of nodes there stalled.
+/// Contact over a billionth of its size at the origin is resolved as well as that around it: gaps of nodes there stalled.
 #[test]
 fn light_touches_end() {
     let mut faults = Vec::new();

@@ -57,7 +57,7 @@ pub struct Look {
     pub turn: f64,
     /// The axis about which it is; a unit vector.
     pub about: Vec3,
-    /// What lengths are multiplied by.
+    /// Factor of lengths.
     pub size: f64,
     /// Whether nodes and elements are numbered backwards.
     pub backwards: bool,
@@ -354,7 +354,7 @@ impl Model {
     /// Runs the deck in a scratch folder. With `ZELUS_EVERYDAY=FOLDER` in the environment it is kept there under `name`.
     ///
     /// # Errors
-    /// What the program said, when it did not end with 0.
+    /// Outcome of the run, or the output of the program when it did not end with 0.
     pub fn run(&self, name: &str) -> Result<Outcome, String> {
         let scratch = tempfile::tempdir().expect("a scratch folder");
         let kept = std::env::var_os("ZELUS_EVERYDAY").map(|folder| Path::new(&folder).join(name));

@@ -243,7 +243,7 @@ fn threads_change_no_bit() {
     }
 }
 
-/// What leaves and what is fed add up: REACTION_FLUX of the support balances sources and faces at rest.
+/// Heat that leaves and heat that is fed balance: REACTION_FLUX of the support balances sources and faces in the steady state.
 #[test]
 fn supports_feed_what_leaves() {
     let slab = Slab { rows: 3, ..Slab::new(6) };
@@ -331,7 +331,7 @@ fn what_is_missing_is_said() {
     says(&carried(0.1, 0.1, "x").set("bfecc_substepping", json!(0)), 2, "bfecc_substepping");
 }
 
-/// What enters is what leaves, what the flow carries off and what is stored, in each step.
+/// Heat that enters equals heat that leaves, is advected or stored, in each step.
 #[test]
 fn heat_that_enters_leaves_or_is_stored() {
     let slab = Slab::new(8);
@@ -364,7 +364,7 @@ fn heat_that_enters_leaves_or_is_stored() {
             assert!(left.abs() < 1e-10 * entering, "{entering} {leaving} {carried} {stored}: {left:e}");
             assert!(stored.abs() > 1e-6 && leaving > 0.0 && (carried.abs() > 1e-3) == speed, "{balance}");
         }
-        // What is stored is the change of the mean.
+        // The stored heat is the change of the mean.
         let balance = &steps[3]["balance"]["unknowns"][0];
         let mean = |step: usize| {
             let at = |c: usize| results.nodal("TEMPERATURE", step)[&(slab.node(c, 0) as u64)];

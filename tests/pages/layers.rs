@@ -48,7 +48,7 @@ const PHYSICS: [&str; 25] = [
     "assume_master_slave",
 ];
 
-/// What a global that changes is made of.
+/// Types of a global that changes.
 const CHANGEABLE: [&str; 6] = ["Mutex", "RwLock", "Cell<", "Lock<", "Atomic", "static mut"];
 
 /// Globals that hold no state of a run: what is read or computed once and never changes, the lock of a library that
@@ -131,7 +131,7 @@ fn names_after<'t>(text: &'t str, prefix: &str) -> Vec<&'t str> {
     out
 }
 
-/// What a file uses of the crate it is in: names of modules at its top.
+/// Modules of its own crate that a file uses: names of modules at the crate's top.
 fn used(text: &str, is_at_top: bool) -> Vec<&str> {
     let mut out = names_after(text, "crate::");
     if is_at_top {
@@ -140,7 +140,7 @@ fn used(text: &str, is_at_top: bool) -> Vec<&str> {
     out
 }
 
-/// What uses a module below itself, as "module uses module (file)".
+/// Modules that use one below themselves, as "module uses module (file)".
 fn reaching_forward(folder: &Path) -> Vec<String> {
     let modules = listed(folder);
     let mut files = Vec::new();

@@ -38,7 +38,7 @@ fn pin_in_lug(folder: &Path) {
     ];
     let joint = Joint::Frictional(0.3);
     Deck { mesh, joint, supports, pressure: 50.0, young: 210_000.0, steps: 4 }.write(folder, |deck| {
-        // What a user leaves out.
+        // A list that a user leaves out.
         for list in ["contact_settings", ""] {
             let settings = match list {
                 "" => &mut deck["solver_settings"],

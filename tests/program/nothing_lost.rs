@@ -1,4 +1,4 @@
-//! What a run must not destroy: its inputs, results of earlier runs, files of strangers, outputs of another run.
+//! Files that a run must not destroy: its inputs, results of earlier runs, files of strangers, outputs of another run.
 
 use std::fs::{self, File};
 use std::path::Path;

@@ -215,7 +215,7 @@ fn materials_that_remember_and_paths_through_limits() {
     ]);
 }
 
-/// Heat alone, through contact, of friction, by turns with the structure, and what wears.
+/// Heat alone, through contact, of friction, in staggered coupling with the structure, and wear.
 const HEAT_AND_WEAR: [Case; 5] = [
     Case { folder: "../examples/transient_slab", change: |deck| ends(deck, 0.1), steps: 6 },
     case("../examples/bars_in_thermal_contact", 2),
@@ -293,7 +293,7 @@ fn other_decks_and_meshes_and_begun_runs_are_refused() {
     assert!(said.contains("no saved run") && said.contains("mesh.mdpa"), "{said}");
 }
 
-/// What was written to grow and is gone is named, instead of being begun anew without its beginning.
+/// An output file that a run would append to, and that is gone, is named, instead of being begun anew without its beginning.
 #[test]
 fn files_of_output_must_be_there() {
     let scratch = scratch_copy(&root().join("tests/cases/contact_2d/friction_slide"));

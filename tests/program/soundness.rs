@@ -239,7 +239,7 @@ fn facets_without_area_are_named() {
     );
 }
 
-/// What several ranks say holds a body is what one says.
+/// Several ranks report the same restraint of a body as one.
 #[test]
 fn ranks_together_say_what_holds_a_body() {
     for (name, keep) in [

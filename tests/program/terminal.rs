@@ -1,4 +1,4 @@
-//! What a run says: how much, where, and once more at the end.
+//! Output of a run: how much, where, and once more at the end.
 
 use crate::support;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! What a picture shows where its deck names nothing, and what is said of names in a wrong list.
+//! Contents of a picture where its deck names nothing, and messages about names in a wrong list.
 
 use std::path::Path;
 
@@ -137,7 +137,7 @@ fn a_name_in_the_wrong_list_is_refused_with_the_right_one() {
     }
 }
 
-/// What a run leaves that writes one file: the bytes that `zelus convert` makes of its pictures, be the run stopped between or not.
+/// A run with one file writes the bytes that `zelus convert` makes of its pictures, be the run stopped between or not.
 #[test]
 fn one_file_holds_all_steps() {
     let deck = |one_file: bool| {

@@ -137,7 +137,7 @@ fn energy_stays_through_twenty_rebounds() {
     }
 }
 
-/// What makes the difference: with their own mass nodes in contact jump, and Newmark's scheme makes energy of it.
+/// The difference without redistribution: with their own mass nodes in contact jump, and Newmark's scheme makes energy of it.
 #[test]
 fn without_redistribution_energy_grows() {
     let bar = Bar::new(50, 1);

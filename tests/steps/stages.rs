@@ -1,4 +1,4 @@
-//! What goes on from stage to stage: fields, multipliers, states of contact; what is refused between stages.
+//! Data that pass from stage to stage: fields, multipliers, states of contact; and changes between stages that are refused.
 //!
 //! Plastic strain is in `tests/cases/structural/stages_of_plastic_flow`.
 

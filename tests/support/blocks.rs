@@ -202,7 +202,7 @@ impl Mesh {
     }
 }
 
-/// What acts between the blocks.
+/// Connection between the blocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Joint {
     /// Contact without friction.
@@ -217,7 +217,7 @@ pub enum Joint {
 pub struct Deck {
     /// The mesh.
     pub mesh: Mesh,
-    /// What acts between the blocks.
+    /// Connection between the blocks.
     pub joint: Joint,
     /// Prescribed components of parts: numbers or expressions, null where free.
     pub supports: Vec<(String, [Value; 3])>,

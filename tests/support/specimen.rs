@@ -92,7 +92,7 @@ impl Specimen {
         for (name, value) in USUAL {
             values.insert(name.to_owned(), value);
         }
-        // What has lost nearly all stiffness has no digits left to compare.
+        // A specimen that has lost nearly all stiffness has no digits left to compare.
         if law.is_some_and(|law| law.contains("Damage")) {
             values.insert("YIELD_STRESS".to_owned(), 0.3);
         }
