@@ -5,7 +5,7 @@ Usage: scripts/check_words.py [--self-test] [--list KIND]
 
 Kinds of findings, each printed as "file:line: fact; remedy":
 
-  banned    a phrase of the list in scripts/words.txt, in documents, comments and string literals of Rust
+  banned    a phrase of the list in scripts/words.txt: in documents, comments and string literals of Rust, comments of configs
   opening   a sentence of a comment or a document that opens with What, Whose, Of which or That which
   length    a sentence of a document with more words than scripts/words.txt allows
   link      a link between documents, or to a heading, that leads nowhere
@@ -252,6 +252,27 @@ def rust_passages(path, text):
     return passages
 
 
+JSON_TOKENS = re.compile(r"""(?P<string>"(?:\\.|[^"\\\n])*")|(?P<comment>//[^\n]*)""")
+
+
+def json_passages(path, text):
+    """Comments of JSON files, which `zelus describe` prints: whole lines in a row are one passage."""
+    passages, before = [], None
+    for number, line in enumerate(text.splitlines(), 1):
+        comments = [token for token in JSON_TOKENS.finditer(line) if token.group("comment")]
+        if not comments:
+            before = None
+            continue
+        whole = line.lstrip().startswith("//")
+        if before is None or not whole:
+            before = Passage(path, "comment")
+            passages.append(before)
+        before.add(number, comments[0].group("comment").lstrip("/"))
+        if not whole:
+            before = None
+    return passages
+
+
 def sentences(text):
     """Offset and text of each sentence."""
     begin = 0
@@ -425,13 +446,15 @@ def findings(root, rules, rules_path, index="docs/user-guide.md"):
             every += check_banned(passage, rules)
             every += check_openings(passage)
             every += check_length(passage, rules.longest)
-    for path in sources:
-        for passage in rust_passages(path, (root / path).read_text(encoding="utf-8")):
+    settings = [path for path in files(root, ".json") if path.startswith("configs/")]
+    for path in sources + settings:
+        passages_of = rust_passages if path.endswith(".rs") else json_passages
+        for passage in passages_of(path, (root / path).read_text(encoding="utf-8")):
             every += check_banned(passage, rules)
             every += check_openings(passage)
     every += check_links(root, documents)
     every += check_index(root, index, rules.terms)
-    every += check_spelling(root, list(documents) + sources, rules.spelling)
+    every += check_spelling(root, list(documents) + sources + settings, rules.spelling)
     used, kept = set(), []
     for finding in every:
         excused = [e for e in rules.exceptions if e[0] == finding.path and e[1] == finding.kind and e[2] in finding.text]
@@ -464,6 +487,13 @@ See [a page](gone.md), [a heading](#gone), [this one](#what-a-heading-may-say) a
 |---|---|
 | heading, boundary condition | [page](page.md) |
 """,
+    "configs/object.json": """// An object.
+// What it is for.
+{
+    "key": "// What a value says", // the key; what it is
+    "other": 1 // Bodies by turns
+}
+""",
     "src/lib.rs": """//! A crate.
 
 /// What an item is, `by turns`.
@@ -486,6 +516,8 @@ EXPECTED = {
     ("link", "docs/page.md", 12),
     ("index", "docs/index.md", 5),
     ("index", "docs/index.md", 1),
+    ("opening", "configs/object.json", 2),
+    ("banned", "configs/object.json", 5),
     ("opening", "src/lib.rs", 3),
     ("banned", "src/lib.rs", 4),
     ("opening", "src/lib.rs", 5),

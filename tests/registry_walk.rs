@@ -159,7 +159,7 @@ fn rigid_motions_strain_no_element() {
         let Some(u) = displacements(&specimen, moved) else { continue };
         specimen.set(&u);
         let force = size(specimen.residual());
-        assert!(force < 1e-10, "{}: a rigid motion needs the force {force:e}", label(entry, law));
+        assert!(force < 1e-10, "{}: a rigid-body mode needs the force {force:e}", label(entry, law));
     }
 }
 

@@ -275,7 +275,7 @@ fn conductance_follows_the_pressure() {
     let (_, report) = growing(0.0, &laws, 2, "400.0", "monolithic");
     let together = -passed(&report, 0);
     // Two more iterations than the structure alone needs, the last of which squares the residual.
-    assert!((together - first).abs() < 1e-6 * q, "together {together}, by turns {first}");
+    assert!((together - first).abs() < 1e-6 * q, "monolithic {together}, staggered {first}");
     let residual = |iteration: usize| {
         let check = &report["steps"][0]["iterations"][iteration]["checks"][0];
         check["ratio"].as_f64().unwrap_or_else(|| panic!("no residual in iteration {iteration}: {check}"))
@@ -285,7 +285,7 @@ fn conductance_follows_the_pressure() {
 
     let (_, report) = growing(0.0, &laws, 12, "400.0", "sequential");
     let last = -passed(&report, 11);
-    assert!((last - first).abs() < 1e-5 * q, "in time {last}, by turns {first}");
+    assert!((last - first).abs() < 1e-5 * q, "in time {last}, staggered {first}");
     assert!((passed(&report, 0) + q).abs() > 1e-2 * q, "the first step alone would do");
 }
 

@@ -15,7 +15,7 @@ const OPEN: &[(&str, &str)] = &[
     ("own_thermomech/total_lagrangian_gradient", BY_TURNS),
     ("own_thermomech/transient_block_tet", BY_TURNS),
 ];
-const BY_TURNS: &str = "heat on the mesh as the last step left it, not by turns";
+const BY_TURNS: &str = "heat on the mesh as the last step left it, not staggered";
 
 fn folder() -> Option<PathBuf> {
     let named = std::env::var_os("ZELUS_HEAT_DECKS").map(PathBuf::from);

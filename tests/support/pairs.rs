@@ -379,7 +379,7 @@ fn pairs_push_back_what_is_pushed_and_turn_with_the_bodies() {
             .collect();
         expected.extend(&rhs[turned_rows..]);
         let error = difference(&expected, &after);
-        assert!(error <= 1e-8 * size(rhs).max(1.0), "{name}: off by {error:e} after a rigid motion");
+        assert!(error <= 1e-8 * size(rhs).max(1.0), "{name}: off by {error:e} after a rigid-body motion");
     });
 }
 

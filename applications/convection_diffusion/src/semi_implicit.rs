@@ -1,4 +1,4 @@
-//! Semi-implicit steps of heat: temperatures are carried along first, then conducted.
+//! Semi-implicit steps of heat: semi-Lagrangian advection of temperatures, then conduction.
 
 use zelus_core::assembly::DofTable;
 use zelus_core::diagnostics::Result;
@@ -60,7 +60,7 @@ impl Scheme for CarriedThenConducted {
 }
 
 register! { SchemeEntry SEMI_IMPLICIT,
-    about: "heat is carried along the paths of points, back and forth against the error, then conducted",
+    about: "semi-Lagrangian advection of heat with back and forth error compensation (BFECC), then implicit conduction",
     source: "T* = T(x − ∫ v dt); ρc (T − T*)/Δt = ∇·(k ∇(T + T*)/2) + Q",
     build: SchemeFactory::Implicit(|request| {
         let settings = request.settings;

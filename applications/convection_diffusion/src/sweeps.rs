@@ -137,7 +137,7 @@ fn accelerated(part: &ModelPart, past: &[[Vec<f64>; 2]]) -> Vec<f64> {
 
 impl Interaction for Sweeps {
     fn name(&self) -> &str {
-        "heat and structure by turns"
+        "staggered heat and structure"
     }
 
     fn active_set(&mut self) -> Option<&mut dyn ActiveSet> {

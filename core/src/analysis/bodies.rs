@@ -70,15 +70,19 @@ pub(super) fn tell_what_holds(part: &ModelPart, system: &System, prescribed: &[P
     for at in 0..bodies.bodies.len() {
         let [own, smooth, rough] = [&by_supports, &by_contact, &by_friction].map(|free| bodies.motions_of(at, free));
         let Some(name) = bodies.name(at).filter(|_| own > 0) else { continue };
-        let supports = format!("supports leave {name} {own} rigid motions");
+        let modes = format!("{name} has {own} rigid-body {}", if own == 1 { "mode" } else { "modes" });
         problems.push(if rough > 0 {
-            let fact = format!("{supports}, and contact as it begins leaves {rough}: nothing holds it");
+            let fact =
+                format!("{modes} that supports leave free; initial contact leaves {rough}: nothing restrains it");
             let remedy = "support it in all directions, or check that contact or a tie meets it from the first step";
             Diagnostic::warning("held-by-nothing", fact).remedy(remedy)
         } else if smooth > 0 {
-            Diagnostic::note("held-by-friction", format!("{supports}, {smooth} of which friction alone holds"))
+            Diagnostic::note(
+                "held-by-friction",
+                format!("{modes} restrained by contact only, {smooth} by friction only"),
+            )
         } else {
-            Diagnostic::note("held-by-contact", format!("{supports}, which contact alone holds"))
+            Diagnostic::note("held-by-contact", format!("{modes} restrained by contact only"))
         });
     }
 }

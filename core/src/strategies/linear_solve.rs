@@ -297,8 +297,8 @@ fn explain(error: &SolveError, system: Option<&System<'_>>, meaning: Meanings<'_
     }
     .unwrap_or_default();
     let remedy = if only_multipliers {
-        "more constraints act than the unknowns can obey, or inactive ones have no equation: remove some, or let a \
-         penalty impose them"
+        "the model is over-constrained, or a constraint has no active equation: remove constraints, or impose them by \
+         a penalty"
     } else {
         "some body can move freely: support it, or check that contact holds it from the first step"
     };

@@ -202,7 +202,7 @@ register! { LinearSolverEntry "automatic",
 }
 register! { LinearSolverEntry "amgcl",
     aliases: &["AMGCL", "amgcl_raw", "multigrid", "deflated_cg"],
-    about: "smoothed-aggregation multigrid with rigid motions, for conjugate gradients or GMRES",
+    about: "smoothed-aggregation multigrid with rigid-body modes, for conjugate gradients or GMRES",
     build: multigrid,
 }
 register! { LinearSolverEntry "cg",

@@ -168,6 +168,6 @@ registered_kind! {
 }
 
 register! { SchemeEntry "static",
-    about: "no inertia: time only orders the loads",
+    about: "no inertia: time is the load factor",
     build: SchemeFactory::Implicit(|_| Ok(Box::new(StaticScheme))),
 }

@@ -34,7 +34,7 @@ pub(super) fn text(mesh: &Mesh, stem: &str, space: usize, supports: &[Support]) 
     "parallel_type": "OpenMP",
     "echo_level": 1,
     "start_time": 0.0,
-    "end_time": 1.0 // time orders the loads: "1.0*t" of a load reaches its whole at the end
+    "end_time": 1.0 // time is the load factor: a load "1.0*t" ramps to its full value at t = 1
   }},
   "solver_settings": {{
     "solver_type": "Static", // "Dynamic" with inertia; `zelus describe Dynamic`

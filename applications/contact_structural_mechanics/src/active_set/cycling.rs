@@ -139,9 +139,10 @@ impl CycleGuard {
         if best <= ALLOWED && self.converged.len() < 2 * MOST_CHANGES {
             return SetOutcome::Change;
         }
+        let word = if changing.len() == 1 { "node" } else { "nodes" };
         let nodes = named(changing.into_iter().map(|at| ids(decisions[at].0)));
         SetOutcome::Failed(format!(
-            "the contact states of nodes {nodes} find no rest; they violate contact by {share:.1e} of the largest pressure"
+            "contact at {word} {nodes} does not settle (no consistent active set); violation {share:.2} × the largest pressure"
         ))
     }
 

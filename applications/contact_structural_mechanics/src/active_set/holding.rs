@@ -214,9 +214,10 @@ impl Holding {
             .collect();
         let along = if along_normals { "along their normals".to_owned() } else { along.join(", ") };
         let ids: Vec<String> = dropped.keys().take(5).map(|&n| part.nodes.ids[n as usize].to_string()).collect();
+        let word = if count == 1 { "node" } else { "nodes" };
         let fact = format!(
-            "supports hold {count} slave nodes together with what they face: multipliers without equation, {along}; \
-             nodes {}{}",
+            "supports fix {count} slave {word} and the opposite surface alike: multipliers without influence are \
+             constrained, {along}; {word} {}{}",
             ids.join(" "),
             if count > ids.len() { " …" } else { "" }
         );

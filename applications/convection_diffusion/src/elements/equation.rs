@@ -23,7 +23,7 @@ use crate::material::Material;
 pub trait Terms: Send + Sync + 'static {
     /// Storage and convection.
     const TRANSIENT: bool;
-    /// The value at the beginning of the step is that which was carried along, ends weigh alike.
+    /// The value at the beginning of the step is the advected one; both ends of the step have weight 1/2.
     const CARRIED: bool = false;
     /// A body of revolution about the x axis, beside a structure about the y axis.
     const AXISYMMETRIC: bool = false;
