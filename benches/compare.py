@@ -178,7 +178,7 @@ def main():
     ccx = shutil.which("ccx") if "body" in options.kinds and options.blocks else None
     names = [*programs, *(["CalculiX"] if ccx else [])]
 
-    print(f"Whole process, {options.threads} threads, best of {options.rounds} alternating rounds; in brackets the multiple of zelus.\n")
+    print(f"Whole process, {options.threads} threads, best of {options.rounds} alternating rounds; in brackets the ratio to zelus.\n")
     heads = [f"{name}, {what}" for what in ("s", "processor s", "MB") for name in names]
     print("| deck | unknowns | " + " | ".join(heads) + " | Newton × linear iterations |")
     print("|---|---:|" + "---:|" * (len(heads) + 1), flush=True)

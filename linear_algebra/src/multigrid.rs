@@ -1,5 +1,5 @@
-//! The engine of big systems: flexible GMRES on the whole system in double precision, each direction of which is a solve of what its
-//! constraints leave, in single precision with multigrid ([`Blocks`]), or one cycle where a hierarchy of an earlier matrix needs few.
+//! Engine of large systems: flexible GMRES on the whole system in double precision, preconditioned by a single-precision multigrid solve
+//! of the reduced system ([`Blocks`]), or by one cycle where a hierarchy of an earlier matrix needs few iterations.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -86,8 +86,8 @@ pub trait LinearSolver: Send {
     /// too large, [`SolveError::Failed`] for input that is not finite or does not fit. `x` is then not an answer.
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError>;
 
-    /// Forgets what would let later answers depend on earlier matrices, but for what [`LinearSolver::state`] holds: a solver
-    /// without past that takes up the state gives the same digits from here on. Called as each step of a run begins.
+    /// Drops caches, so that a restarted run gives the same bits: later solutions depend on earlier matrices through
+    /// [`LinearSolver::state`] only. Called at the start of each step of a run.
     fn forget(&mut self) {}
 
     /// State from the solves so far; a solver that wraps another passes on the other's.

@@ -112,7 +112,7 @@ impl OuterLoops {
             set.find_tangents(part, &mut contact.states, &contact.setup);
             return Ok(Outer::Again);
         }
-        // Points in the master press in every state that has converged.
+        // With Nitsche's method a penetrating point is always active, so this check is skipped.
         if !contact.setup.by_points()
             && let Some(why) = Rules::of(&contact.setup).passed_through(part, &contact.states)
         {

@@ -6,8 +6,8 @@ use crate::assembly::{Distribution, System};
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 
-/// Largest residual after the first solve, in forces at the start, that others are measured by. A first iterate may let a body
-/// go, and what it leaves then would make any later residual small.
+/// Largest residual after the first solve that serves as reference, relative to the forces at the start. A first iterate may open
+/// all contact of a body; its residual would make any later residual small.
 const LARGEST: f64 = 100.0;
 
 /// Residuals of a step that later ones are compared with.
