@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &RunArguments, ranks: &Ranks, ran: &mut bool) -> Re
     if let Ended::Stopped { saved, time } = &ended {
         let saved = saved.display();
         let again = words(arguments);
-        say(&format!("stopped at time {time}, and saved in {saved}: `zelus run {again} --resume` goes on"));
+        say(&format!("stopped at time {time}, and saved in {saved}: `zelus run {again} --resume` continues it"));
     }
     Ok(ended.code())
 }
@@ -118,8 +118,8 @@ impl Ended {
 fn drive(simulation: &mut Simulation, monitor: &mut dyn Monitor, resume: bool, stop: &Stop) -> Result<Ended> {
     if resume {
         match simulation.resume(monitor)? {
-            Some(saved) => monitor.note(&format!("goes on from {}", saved.display())),
-            None => monitor.note("no run of this deck was saved: it is run from its start"),
+            Some(saved) => monitor.note(&format!("restart from {}", saved.display())),
+            None => monitor.note("no saved run of this deck: the run starts from the beginning"),
         }
     }
     while simulation.step(monitor)? {

@@ -16,7 +16,7 @@ use zelus_core::{Error, Result};
 
 use super::report::{check_output, made_folder};
 use super::run_arguments::RunArguments;
-use super::say::say;
+use super::say::{plural, say};
 use super::stop::Stop;
 use super::table::{MARK, Table};
 
@@ -74,7 +74,12 @@ pub(super) fn run(arguments: &RunArguments, table: &Path, ranks: &Ranks) -> Resu
             say(text);
         }
     };
-    tell(&format!("{rows} rows, {jobs} at a time with {} thread{} each", sweep.threads, plural(sweep.threads)));
+    tell(&format!(
+        "{rows} row{}, {jobs} at a time with {} thread{} each",
+        plural(rows),
+        sweep.threads,
+        plural(sweep.threads)
+    ));
     let (next, done) = (Mutex::new(0..rows), Mutex::new(Vec::<Ended>::new()));
     let work = || -> Result<()> {
         loop {
@@ -187,11 +192,15 @@ impl Sweep<'_> {
     fn line(&self, ended: &Ended) -> String {
         let head = format!("row {} of {}", ended.row + 1, self.table.rows.len());
         match (&ended.report, ended.kept) {
-            (Some(report), true) => format!("{head}: done before, {} steps", report.converged_steps),
+            (Some(report), true) => {
+                format!("{head}: done before, {} step{}", report.converged_steps, plural(report.converged_steps))
+            }
             (Some(report), _) if ended.code == 0 => format!(
-                "{head}: {} steps converged in {} iterations, {:.2} s",
+                "{head}: {} step{} converged in {} iteration{}, {:.2} s",
                 report.converged_steps,
+                plural(report.converged_steps),
                 report.iterations,
+                plural(report.iterations),
                 seconds(report)
             ),
             _ => format!("{head}: exit code {}: {}", ended.code, ended.why()),
@@ -329,8 +338,4 @@ fn norm(force: &[f64; 3]) -> f64 {
 
 fn number(value: Option<f64>) -> String {
     value.map(|value| format!("{value:e}")).unwrap_or_default()
-}
-
-fn plural(count: usize) -> &'static str {
-    if count == 1 { "" } else { "s" }
 }

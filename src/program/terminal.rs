@@ -10,7 +10,7 @@ use zelus_core::strategies::{IterationRecord, Monitor, Plan, StepRecord};
 
 use super::log::Log;
 use super::progress::Progress;
-use super::say::say;
+use super::say::{plural, say};
 use super::warnings::Warnings;
 
 /// How much is said, from little to much.
@@ -81,13 +81,15 @@ impl Terminal {
             self.log.iter_mut().for_each(|log| log.line(failed));
         } else if report.exit_code == 0 {
             let text = format!(
-                "{} steps converged in {} iterations, {:.2} s, {} unknowns, {} thread{}",
+                "{} step{} converged in {} iteration{}, {:.2} s, {} unknowns, {} thread{}",
                 report.converged_steps,
+                plural(report.converged_steps),
                 report.iterations,
+                plural(report.iterations),
                 self.begun.elapsed().as_secs_f64(),
                 report.sizes.unknowns,
                 report.threads,
-                if report.threads == 1 { "" } else { "s" }
+                plural(report.threads)
             );
             self.line(Level::Usual, &text);
         }
@@ -133,9 +135,16 @@ impl Monitor for Terminal {
         let condition = record.condition_number.map(|c| format!("   condition number {c:.3e}")).unwrap_or_default();
         self.line(Level::Usual, &format!("  {:>3} {}  {changes:>6}{condition}", record.iteration, cells.join("")));
         let IterationRecord { engine, linear_iterations, linear_residual, .. } = record;
-        let solved = format!("      {engine}: {linear_iterations} iterations, relative residual {linear_residual:.1e}");
+        let solved = format!(
+            "      {engine}: {linear_iterations} iteration{}, relative residual {linear_residual:.1e}",
+            plural(*linear_iterations)
+        );
         let nodes: Vec<String> = record.changed_nodes.iter().map(ToString::to_string).collect();
-        let changed = if nodes.is_empty() { String::new() } else { format!("; changed: nodes {}", nodes.join(" ")) };
+        let changed = if nodes.is_empty() {
+            String::new()
+        } else {
+            format!("; changed: node{} {}", plural(nodes.len()), nodes.join(" "))
+        };
         self.line(Level::Verbose, &format!("{solved}{changed}"));
     }
 
@@ -149,8 +158,8 @@ impl Monitor for Terminal {
             record.interactions.iter().map(|(name, value)| format!("{name} {}", short(*value))).collect();
         let state = match (record.converged, record.iterations.len()) {
             (true, 0) => "done".to_owned(),
-            (true, count) => format!("converged in {count} iterations"),
-            (false, count) => format!("not converged in {count} iterations"),
+            (true, count) => format!("converged in {count} iteration{}", plural(count)),
+            (false, count) => format!("not converged in {count} iteration{}", plural(count)),
         };
         let extra = if numbers.is_empty() { String::new() } else { format!("; {}", numbers.join(", ")) };
         self.line(Level::Usual, &format!("  {state}{extra}"));

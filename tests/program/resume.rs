@@ -122,7 +122,7 @@ fn a_signal_stops_after_the_step_and_says_how_to_go_on() {
             std::fs::remove_file(folder.path().join("report.json")).expect("the report");
             let output = zelus(folder.path(), &["run", DECK, "--resume"]);
             assert!(output.status.success(), "{}", support::said(&output));
-            assert!(support::said(&output).contains("goes on from ProjectParameters.rest"));
+            assert!(support::said(&output).contains("restart from ProjectParameters.rest"));
             assert_same(name, whole.path(), folder.path());
             stopped = true;
             break;

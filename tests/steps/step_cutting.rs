@@ -108,7 +108,7 @@ fn contact_settings_say_how_steps_are_cut() {
     let cut = run(&folder, &[few, (DECK, "\"mortar_type\"", splits)]);
     assert_eq!((cut.code, cut.attempts), (Some(3), 2), "{}", cut.text);
     assert!(
-        cut.text.contains("retried with 1/4 of the step") && cut.text.contains("1 cuts of the step by 4"),
+        cut.text.contains("retried with 1/4 of the step") && cut.text.contains("1 cut of the step by 4"),
         "{}",
         cut.text
     );

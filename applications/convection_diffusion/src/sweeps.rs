@@ -82,7 +82,7 @@ impl Sweeps {
         if self.since >= self.goal.most {
             return Ok(Outer::Failed(format!(
                 "heat and structure do not agree after {} sweeps: temperatures still change by {largest:.1e} of {spread:.3e}; \
-                 \"coupling_settings\": {{\"strategy\": \"monolithic\"}} finds both in one iteration, if anything is at rest there; \
+                 \"coupling_settings\": {{\"strategy\": \"monolithic\"}} finds both in one iteration, if there is a steady state; \
                  \"sequential\" solves for each once a step",
                 self.since
             )));

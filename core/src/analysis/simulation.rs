@@ -331,7 +331,7 @@ impl Simulation {
         let runs: Vec<LoadedRun> = ranks.agree(wanted.map(|rank| file.read(rank)).collect())?;
         if !same {
             let (were, are) = (file.ranks(), ranks.size());
-            monitor.note(&format!("saved by {were} processes, {are} go on: the last digits may be others"));
+            monitor.note(&format!("saved by {were} ranks, restarted on {are}: results agree to round-off"));
         }
         let here = Place::file(path);
         self.take_up(runs, !same, monitor).map_err(|error| error.at(&here))

@@ -49,7 +49,7 @@ pub(crate) fn tolerance(residual: f64) -> f64 {
     (LEFT * residual).clamp(TOLERANCES[0], TOLERANCES[1])
 }
 
-/// The solver for `linear_solver_settings`, and a sentence saying which engine serves.
+/// The solver for `linear_solver_settings`, and a sentence that names the engine.
 ///
 /// # Errors
 /// An unknown name.
@@ -60,8 +60,8 @@ pub(crate) fn make(request: &LinearSolverRequest<'_>) -> Result<(Box<dyn LinearS
     let name = if name.is_empty() { "automatic" } else { name };
     let entry = registry::require::<LinearSolverEntry>(name).map_err(|d| d.at(settings.key_place("solver_type")))?;
     let solver = (entry.build)(request)?;
-    let asked = if given.is_empty() { "no linear solver named".to_owned() } else { format!("\"{given}\"") };
-    let says = format!("linear solver: {asked} is served by {}", solver.says());
+    let asked = if given.is_empty() { "none named in the deck".to_owned() } else { format!("for \"{given}\"") };
+    let says = format!("linear solver: {}; {asked}", solver.says());
     Ok((solver, says))
 }
 

@@ -474,8 +474,9 @@ impl NewtonRaphson {
             format!("; the contact state of nodes {} still changes: {}", nodes.join(" "), described.join("; "))
         });
         format!(
-            "not converged in {} iterations{}{}",
+            "not converged in {} iteration{}{}{}",
             records.len(),
+            if records.len() == 1 { "" } else { "s" },
             worst.unwrap_or_default(),
             cycling.unwrap_or_default()
         )

@@ -417,7 +417,7 @@ impl LinearSolver for DirectSolver {
                 engine: way.name(),
                 relative_residual: refined.relative_residual,
                 iterations: refined.steps,
-                fallback: (!failed.is_empty()).then(|| format!("{} did not serve", failed.join(", "))),
+                fallback: (!failed.is_empty()).then(|| format!("{} failed", failed.join(", "))),
                 seconds_symbolic: self.seconds_symbolic,
                 seconds_numeric: self.seconds_numeric,
                 seconds_solve: start.elapsed().as_secs_f64() - before_solve,

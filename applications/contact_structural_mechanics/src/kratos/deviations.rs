@@ -87,9 +87,9 @@ pub const DEVIATIONS: &[Deviation] = &[
     Deviation {
         of: PROCESSES,
         key: "search_parameters.search_within_step",
-        kratos: "pairs are those of the start of the step, and those that nodes came through",
+        kratos: "pairs are those of the start of the step, and those whose facets nodes have penetrated",
         here: "pairs are added wherever facets come to face each other",
-        source: "base_contact_search_process.cpp; what nodes came through has no counterpart",
+        source: "base_contact_search_process.cpp; penetrated facets have no counterpart",
     },
     Deviation {
         of: &[ALM, PENALTY],

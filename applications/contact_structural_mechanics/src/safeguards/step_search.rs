@@ -84,8 +84,10 @@ impl StepSearch {
             return Ok((late.missed, Outer::Done));
         }
         let why = match late.nodes.iter().take(6).map(|&n| part.nodes.ids[n as usize].to_string()).collect::<Vec<_>>() {
-            ids if ids.is_empty() => format!("{} pairs more are found where the nodes have come to", late.missed.len()),
-            ids => format!("nodes {} came through facets they had no pair with", ids.join(" ")),
+            ids if ids.is_empty() => {
+                format!("{} more facet pairs are found at the present positions", late.missed.len())
+            }
+            ids => format!("nodes {} have penetrated facets that were not paired with theirs", ids.join(" ")),
         };
         if self.searches < MOST_SEARCHES {
             self.searches += 1;

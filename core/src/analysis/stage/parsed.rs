@@ -95,7 +95,7 @@ fn present_deck(
         let laid = lay_defaults(&mut deck, program, problems);
         let laid = problems.absorb(laid).unwrap_or_default();
         monitor.note(&format!(
-            "defaults of {program} hold where the deck names nothing: {} settings, which the report lists",
+            "defaults of {program} are used where the deck gives none: {} settings, listed in the report",
             laid.len()
         ));
         report.like = Some(program.to_owned());

@@ -438,7 +438,7 @@ impl NewtonRaphson {
                 Outer::Done => {}
                 Outer::Again => accepted = false,
                 Outer::Widened(why) => {
-                    monitor.note(&format!("step {}: {why}; the iteration goes on with them", part.info.step));
+                    monitor.note(&format!("step {}: {why}; the iteration continues with them", part.info.step));
                     step.widened = Some(why);
                     accepted = false;
                 }
