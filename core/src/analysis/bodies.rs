@@ -1,6 +1,6 @@
 //! Restraint of each body: the rigid-body modes that supports leave free, and whether contact, friction or nothing restrains them.
 //!
-//! Bodies are connected elements. Of each body, the rigid-body modes that its elements do not resist are unknowns; supports,
+//! Bodies are connected elements. Unknowns are the rigid-body modes of each body that its elements do not resist; supports,
 //! constraints, ties and places in contact are rows over them. Motions that all rows leave alone are free.
 
 use std::collections::BTreeMap;
@@ -41,7 +41,7 @@ struct Bodies<'a> {
     motions: Vec<Motion>,
 }
 
-/// Says of bodies in statics that supports do not hold what does, before the run; collective.
+/// Reports before the run, in statics, what restrains bodies that supports leave free; collective.
 pub(super) fn tell_what_holds(part: &ModelPart, system: &System, prescribed: &[Prescription], problems: &mut Report) {
     let Some(column) = Rates::moving(&part.nodes.history) else { return };
     let Some(joins): Option<Vec<Vec<Join>>> = system.interactions.iter().map(|own| own.joins(part)).collect() else {
@@ -219,7 +219,7 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// Rows of elements of one node and of conditions with stiffness: what they touch is held.
+    /// Rows of elements of one node and of conditions with stiffness: they restrain their nodes.
     fn elements_on_ground(&self, system: &System, rows: &mut Rows) {
         let stiff = |tangent: Tangent| matches!(tangent, Tangent::Constant | Tangent::Symmetric);
         let points = system.elements.iter().filter(|block| !block.is_empty() && block.nodes(0).len() == 1);

@@ -203,7 +203,7 @@ pub(super) fn import(
     Ok(())
 }
 
-/// Gives the part the materials that the settings name, and lets the solver make of it what it computes on.
+/// Gives the part the materials that the settings name, and lets the solver adapt it.
 ///
 /// # Errors
 /// A file that cannot be read, materials that do not fit.
@@ -230,8 +230,8 @@ pub(super) fn mesh_file(solver: &Node, folder: &Path) -> Option<(&'static MeshFo
     Some((format, format.file(&folder.join(named("model_import_settings.input_filename")?))))
 }
 
-/// In the place of a mesh that could not be read: a part with the names of its parts alone, so that what else is wrong with the
-/// deck is found, too; `None` where there are no names.
+/// Replacement for a mesh that could not be read: a part with the names of its parts alone, so that other problems of the deck are
+/// found, too; `None` where there are no names.
 pub(super) fn add_names_only(solver: &SolverSettings, root: &str, folder: &Path, model: &mut Model) -> Option<()> {
     let (format, file) = mesh_file(solver.settings.node(), folder)?;
     if format.name != "mdpa" {
@@ -261,9 +261,9 @@ pub(super) fn listed<'a>(deck: &'a Node, problems: &mut Report) -> Vec<&'a Node>
 /// Where names of files begin.
 #[derive(Debug, Clone)]
 pub(super) struct Folders {
-    /// Those that are read: the folder of the deck.
+    /// Folder of input files: that of the deck.
     pub deck: PathBuf,
-    /// Those that are written.
+    /// Folder of output files.
     pub results: PathBuf,
 }
 

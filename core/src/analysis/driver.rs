@@ -36,8 +36,8 @@ pub trait Driver: Send {
         Ok(None)
     }
 
-    /// The stage that solves for the part `root` is at `point`; `act` does what it does there, as often as it is called. `system`
-    /// is without unknowns before [`Point::Ready`].
+    /// The stage that solves for the part `root` is at `point`; each call of `act` performs the stage's work there. `system` is without
+    /// unknowns before [`Point::Ready`].
     ///
     /// # Errors
     /// As `act`; whatever ends the run.

@@ -24,7 +24,7 @@ pub(super) type States = Vec<Option<Box<dyn State>>>;
 /// The contents of the file: written from references, read into values.
 #[derive(Serialize, Deserialize)]
 pub(super) struct SavedRun<M, R> {
-    /// Of the deck, see [`fingerprint`].
+    /// Fingerprint of the deck, see [`fingerprint`].
     pub deck: u32,
     /// Stages that are over.
     pub over: usize,
@@ -156,7 +156,7 @@ pub(super) fn hand_out<T>(
     to.iter_mut().zip(states).try_for_each(|(own, state)| state.map_or(Ok(()), |state| resume(own, state)))
 }
 
-/// Gives the blocks what they remembered.
+/// Restores the states of the blocks.
 ///
 /// # Errors
 /// States of other blocks.
@@ -164,7 +164,7 @@ pub(super) fn resume_blocks(blocks: &mut [Box<dyn EntityBlock>], states: States)
     hand_out(blocks, states, "blocks of entities", |block, state| block.resume(state))
 }
 
-/// The elements of an earlier stage on a part, with what they remembered: `states` of this rank, or of all ranks that were where it is
+/// The elements of an earlier stage on a part, with their states: `states` of this rank, or of all earlier ranks where it is
 /// `regrouped`.
 ///
 /// # Errors
@@ -232,7 +232,7 @@ pub(super) fn whole(mut models: Vec<Model>) -> Result<Model> {
     Ok(Model { parts: by_name.into_iter().map(joined).collect::<Result<_>>()?, ..Model::default() })
 }
 
-/// That a saved run does not belong to the deck.
+/// Error: a saved run does not belong to the deck.
 pub(super) fn other_deck(fact: impl Into<String>) -> crate::diagnostics::Error {
     Diagnostic::error("saved-run", fact)
         .remedy("go on with the deck and mesh it was saved by, or run this deck from its start")

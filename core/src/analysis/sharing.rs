@@ -1,4 +1,4 @@
-//! Who computes what: the mesh of a stage shared among the ranks, which must have read the same files.
+//! Distribution of the mesh of a stage over the ranks, which must have read the same files.
 
 use std::hash::{Hash, Hasher};
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::parameters::Node;
 use crate::partition::{Partition, Shares, Surface, common_nodes, everywhere, partition, surfaces};
 use crate::strategies::Monitor;
 
-/// Who has what of a mesh, and the nodes that all have.
+/// Partition of a mesh, and the nodes that all ranks have.
 struct Cut {
     partition: Partition,
     common: Vec<bool>,

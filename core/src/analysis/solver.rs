@@ -1,4 +1,4 @@
-//! The solver of a stage: what `solver_settings` asks for, made from registered pieces.
+//! The solver of a stage as `solver_settings` describes it, made from registered objects.
 
 use std::path::Path;
 
@@ -57,13 +57,13 @@ pub struct SolverDefinition {
     pub scheme: fn(&Settings) -> Result<String>,
     /// Names the deprecated spellings of settings.
     pub adapt: fn(Defaults) -> Defaults,
-    /// Makes the part as read, with its materials, what the solver computes on.
+    /// Prepares the part as read, with its materials, for the solver.
     ///
-    /// An error names what of mesh or settings does not fit.
+    /// An error names the fault of mesh or settings.
     pub adopt: fn(&Settings, &mut ModelPart, &mut Report) -> Result<()>,
     /// Puts a deck of several solvers into the form of one with extensions.
     ///
-    /// An error names what does not fit.
+    /// An error names the fault.
     pub unfold: fn(&mut Node) -> Result<()>,
 }
 
@@ -108,7 +108,7 @@ pub struct ExtensionDefinition {
     pub values: fn(&Settings) -> Result<Vec<(&'static str, f64)>>,
     /// Changes the part as read, with its materials; the folder is that of the deck.
     ///
-    /// An error names what of mesh or settings does not fit.
+    /// An error names the fault of mesh or settings.
     pub adopt: fn(&Settings, &Path, &mut ModelPart, &mut Report) -> Result<()>,
     /// The strategy around that of the solver; that itself where nothing is to be added. The interactions are those of this extension
     /// ([`Interaction::extension`]).
@@ -148,7 +148,7 @@ pub enum TimeScheme {
     Explicit(CentralDifferences),
 }
 
-/// The settings of a stage's solver, checked, with what they ask for.
+/// The checked settings of a stage's solver, with the objects that they name.
 pub struct SolverSettings {
     /// All settings, nested objects of extensions included, defaults filled in.
     pub settings: Settings,
@@ -253,7 +253,7 @@ impl SolverSettings {
     /// Gives the nodes their variables with history, the buffer its length, and the part its marks.
     ///
     /// # Errors
-    /// Settings that are not what they should be.
+    /// Unsuitable settings.
     pub fn prepare(&self, part: &mut ModelPart) -> Result<()> {
         part.info.domain_size = self.settings.get_usize("domain_size")?;
         let levels = self.settings.get_usize("buffer_size")?.max(2);
@@ -288,7 +288,7 @@ impl SolverSettings {
         Ok(())
     }
 
-    /// Lets the solver make the part what it computes on.
+    /// Lets the solver prepare the part for its computations.
     ///
     /// # Errors
     /// Faults of the mesh or the settings.
@@ -410,7 +410,7 @@ impl SolverSettings {
         Ok((strategy, says))
     }
 
-    /// The strategy without what extensions put around it.
+    /// The strategy without wrappers of extensions.
     fn own_strategy(
         &self,
         part: &mut ModelPart,
@@ -481,7 +481,7 @@ impl SolverSettings {
         Ok((made, says))
     }
 
-    /// Whether there is what iterations are to be made of.
+    /// Checks that the objects of the iterations exist.
     ///
     /// # Errors
     /// Names that are not registered, a number of iterations that is none, gathered.

@@ -1,4 +1,4 @@
-//! Warnings of what a deck says and nothing heeds: keys that nothing reads, processes that never act, settings without a user.
+//! Warnings of settings without effect: keys that nothing reads, processes that never act, settings without a user.
 
 use super::deck::{listed, unread_key};
 use super::solver::SolverExtensionEntry;

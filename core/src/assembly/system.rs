@@ -7,7 +7,7 @@ use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::{BlockRequest, EntityBlock, Interaction, block_factory, is_place};
 use crate::model::{EntityKind, EntityTable, ModelPart, Role};
 
-/// Unknowns of a model part, the blocks over its entities, and what acts between bodies.
+/// Unknowns of a model part, the blocks over its entities, and the interactions between bodies.
 #[derive(Default)]
 pub struct System {
     /// Unknowns and their numbers.
@@ -21,8 +21,8 @@ pub struct System {
 }
 
 impl System {
-    /// Makes the blocks from the tables of a part: one for each kind and properties, with the entities of this rank. Elements
-    /// take over what those of an earlier stage remember.
+    /// Makes the blocks from the tables of a part: one for each kind and properties, with the entities of this rank. Elements take over
+    /// the states of an earlier stage.
     ///
     /// # Errors
     /// Every block that cannot be made and every entity that cannot be computed with.

@@ -1,7 +1,7 @@
 //! Errors that all ranks know of before any of them stops.
 //!
-//! Work that a rank does alone may fail there alone; [`Ranks::agree`] makes it fail everywhere. Errors
-//! of what every rank does alike need no agreement. Whatever is left ends all processes, see [`Ranks::end_after_failure`].
+//! Work that a rank does alone may fail there alone; [`Ranks::agree`] makes it fail everywhere. Errors that every rank meets alike need
+//! no agreement. Whatever is left ends all processes, see [`Ranks::end_after_failure`].
 
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -35,7 +35,7 @@ impl Ranks {
         self.deferred_error().lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
     }
 
-    /// Does on rank 0 what only one rank may do, such as writing a file.
+    /// Runs on rank 0 an action that only one rank may do, such as writing a file.
     ///
     /// # Errors
     /// As `act`; with several ranks the error is kept until they next agree.
@@ -66,7 +66,7 @@ impl Ranks {
         self.agree_on(own).map(|()| value.expect("a rank without a value has an error"))
     }
 
-    /// That no rank has an error; collective.
+    /// Agrees that no rank has an error; collective.
     fn agree_on(&self, own: Option<Error>) -> Result<()> {
         if !self.any(own.is_some()) {
             return Ok(());
@@ -101,7 +101,7 @@ impl Ranks {
         }
     }
 
-    /// Adds up what the ranks have, in their order; collective.
+    /// Adds up the values of the ranks, in their order; collective.
     pub fn sum(&self, values: &mut [f64]) {
         if self.size() > 1 && !values.is_empty() {
             let all = self.gather_counted(values, &vec![values.len(); self.size()]);

@@ -33,10 +33,10 @@ pub trait Communicator: Send + Sync {
     /// As [`Communicator::gather_counted`], for rank 0 alone; the others get nothing.
     fn gather_to_root(&self, own: &[f64], counts: &[usize]) -> Vec<f64>;
 
-    /// Sends `parts[r]` to rank r; gives what each rank sent here.
+    /// Sends `parts[r]` to rank r; returns the numbers from each rank.
     fn exchange_numbers(&self, parts: &[Vec<f64>]) -> Vec<Vec<f64>>;
 
-    /// Sends `parts[r]` to rank r; gives what each rank sent here.
+    /// Sends `parts[r]` to rank r; returns the indices from each rank.
     fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>>;
 
     /// As [`Communicator::exchange_numbers`], where `counts` says how many numbers come from each rank: only those who send and

@@ -1,4 +1,4 @@
-//! The processes of a run and what they tell each other; one process alone unless `mpirun` started several.
+//! The ranks of a run and their communication; one rank alone unless `mpirun` started several.
 //!
 //! [`Ranks`] are passed on with what is shared out: a model and its parts carry them, and with them what is made of these.
 //! Nothing is global, so that runs of different processes, or of one alone, stand beside each other in one program.

@@ -60,7 +60,7 @@ pub(super) fn start() -> Result<MpiWorld> {
     })
 }
 
-/// Waits for what is under way.
+/// Waits for a request under way.
 fn wait_for<'a, D: ?Sized, S: Scope<'a>>(mut request: Request<'a, D, S>) {
     let start = Instant::now();
     while let Err(pending) = request.test() {

@@ -1,4 +1,4 @@
-//! The processes of a run as a value that is handed on with what they share.
+//! The ranks of a run as a value that is passed on with shared data.
 
 use std::fmt;
 use std::ops::Deref;

@@ -13,7 +13,7 @@ use crate::diagnostics::{Diagnostic, Result};
 #[serde(remote = "Self")]
 pub(super) struct BlockState {
     kind: String,
-    /// Of its entities.
+    /// Ids of its entities.
     ids: Vec<usize>,
     /// Where the bytes of each entity end.
     ends: Vec<usize>,
@@ -31,7 +31,7 @@ impl State for BlockState {
 }
 
 impl BlockState {
-    /// That of entities of a kind.
+    /// State of entities of a kind.
     pub(super) fn of(kind: &str, ids: &[usize], states: &[impl Serialize]) -> Self {
         let (mut bytes, mut ends) = (Vec::new(), Vec::with_capacity(states.len()));
         for state in states {

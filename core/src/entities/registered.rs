@@ -1,4 +1,4 @@
-//! The registered elements and conditions: a kind of the mesh with what computes it.
+//! The registered elements and conditions: a kind of the mesh and the object that computes it.
 
 use std::ops::Deref;
 

@@ -204,7 +204,7 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Claims an output, and removes what a killed run has left of it half written.
+    /// Claims an output, and removes the incomplete file of a killed run.
     ///
     /// # Errors
     /// [`Error::System`] when another run has it, or a folder that cannot be made.

@@ -15,7 +15,7 @@ pub(super) fn kind_of(name: &str) -> Option<VariableKind> {
     })
 }
 
-/// The error that says what was meant; the caller adds the place.
+/// The error that names the nearest variable; the caller adds the place.
 pub(crate) fn unknown_variable(name: &str) -> Diagnostic {
     let remedy = did_you_mean(name, variables().keys().copied());
     let remedy = remedy.unwrap_or_else(|| "`zelus list variable` shows the known ones".to_owned());

@@ -1,4 +1,4 @@
-//! A model part: the mesh, its data, and its named sub parts. It knows nothing of what computes on it.
+//! A model part: the mesh, its data, and its named sub parts. It knows nothing of the objects that compute on it.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -147,7 +147,7 @@ impl SlaveNodes {
         }
     }
 
-    /// Those at kept mesh nodes, whose new indices ascend as the old ones do; [`u32::MAX`] stands for nodes that are dropped.
+    /// Slave nodes at kept mesh nodes, whose new indices ascend as the old ones do; [`u32::MAX`] stands for nodes that are dropped.
     /// Sets that lose all their nodes stay as empty ones.
     pub(super) fn kept(&self, new_nodes: &[u32]) -> Self {
         let new = |slave: u32| Some(new_nodes[self.mesh_node(slave) as usize]).filter(|&node| node != u32::MAX);

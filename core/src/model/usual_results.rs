@@ -29,7 +29,7 @@ impl UsualResults {
     }
 }
 
-/// Registers what results are looked at for.
+/// Registers default output variables.
 ///
 /// ```ignore
 /// register_usual_results! { values: [], gauss: ["VON_MISES_STRESS"] }

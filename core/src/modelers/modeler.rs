@@ -40,7 +40,7 @@ registered_kind! {
 /// Runs the modelers of a deck.
 ///
 /// # Errors
-/// Names that are not registered, settings that do not fit, and what the modelers find wrong.
+/// Names that are not registered, unsuitable settings, and faults that the modelers find.
 pub fn run_modelers(list: &[Node], folder: &Path, model: &mut Model, report: &mut Report) -> Result<()> {
     let mut all = Vec::new();
     for item in list {

@@ -160,7 +160,7 @@ impl Defaults {
         &self.name
     }
 
-    /// The comment above the opening brace: what the object is.
+    /// The comment above the opening brace: a description of the object.
     pub fn description(&self) -> &str {
         &self.description
     }
@@ -170,7 +170,7 @@ impl Defaults {
         &self.entries
     }
 
-    /// Old spellings that are accepted with a warning, by dotted path, each with what to do instead.
+    /// Old spellings that are accepted with a warning, by dotted path, each with its replacement.
     pub fn old_spellings(&self) -> impl Iterator<Item = (&'static str, String)> {
         self.deprecated.iter().map(|old| match old.what {
             Replacement::Renamed(new) | Replacement::Translated(new, _) => (old.old, format!("old spelling of {new}")),

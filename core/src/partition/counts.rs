@@ -51,7 +51,7 @@ pub struct RankCounts {
     pub cut_faces: usize,
     /// Facets of surfaces that may touch.
     pub facets: usize,
-    /// Those of them where pairs are evaluated.
+    /// Slave facets of this rank whose pairs are evaluated.
     pub slave_facets: usize,
     /// Slave facets whose nearest facing facet is on another rank.
     pub far_pairs: usize,
@@ -61,7 +61,7 @@ pub struct RankCounts {
     pub load: usize,
 }
 
-/// How often a step repeats what ranks send each other.
+/// Repetitions of exchanges between ranks in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Repeats {
     /// Newton iterations a step.
@@ -103,7 +103,8 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Counts what `partition` gives each rank of the mesh, where all ranks keep the `common` nodes with the elements at them.
+    /// Counts the entities that `partition` gives each rank of the mesh, where all ranks keep the `common` nodes with the elements at
+    /// them.
     pub fn new(part: &ModelPart, partition: &Partition, common: &[bool]) -> Self {
         let mut ranks = vec![RankCounts::default(); partition.ranks];
         let at = |element: u32| partition.elements[element as usize] as usize;

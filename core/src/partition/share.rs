@@ -6,7 +6,7 @@
 use super::Partition;
 use crate::model::{Halo, MeshSizes, ModelPart, Share};
 
-/// Who keeps what of a mesh, of which one pass tells the lists of all ranks.
+/// Shares of all ranks in a mesh, listed in one pass.
 pub struct Shares<'a> {
     partition: &'a Partition,
     common: &'a [bool],

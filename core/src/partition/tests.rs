@@ -198,7 +198,7 @@ fn counts_of_a_halved_bar_are_those_of_its_section() {
     assert_eq!(right.ghost_entries, 13 * 13 * 2);
 }
 
-/// Every rank has its elements with their nodes, the interface with the elements at it, and knows who else has what.
+/// Every rank has its elements with their nodes, the interface with the elements at it, and knows the shares of the others.
 #[test]
 fn ranks_keep_their_elements_and_the_interface() {
     let whole = two_blocks(6);

@@ -72,7 +72,7 @@ pub struct EntityComponent {
 pub struct AssignToEntities {
     /// Where and when.
     pub target: Target,
-    /// On what.
+    /// Containers to assign to.
     pub containers: Vec<Container>,
     /// Values to assign.
     pub components: Vec<EntityComponent>,
@@ -153,7 +153,7 @@ pub(super) fn centre(nodes: &[u32], positions: &[[f64; 3]]) -> [f64; 3] {
 }
 
 impl AssignToEntities {
-    /// Why nothing acts by what is set on conditions, where that is so.
+    /// Reason why the values set on conditions have no effect, where that is so.
     fn idle(&self, part: &ModelPart) -> Result<Option<String>> {
         if self.containers != [Container::Conditions] {
             return Ok(None);

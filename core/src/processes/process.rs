@@ -1,4 +1,4 @@
-//! The trait of processes, and what one is made from.
+//! The trait of processes, and the request from which one is made.
 
 use std::path::{Path, PathBuf};
 
@@ -50,7 +50,7 @@ pub trait Process: Send {
         Vec::new()
     }
 
-    /// Loads that it gives to a root part, each in place of what an earlier process gave there.
+    /// Loads that it gives to a root part; each replaces that of an earlier process there.
     fn loads(&self, _part: &ModelPart) -> Vec<Load> {
         Vec::new()
     }
@@ -106,7 +106,7 @@ pub trait Process: Send {
         Ok(())
     }
 
-    /// Writes output; gives the path of what a user would open, to be named at the end of the run.
+    /// Writes output; returns the path of the file to open, to be named at the end of the run.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -140,7 +140,7 @@ pub trait Process: Send {
         None
     }
 
-    /// Takes up a saved state in place of [`Process::before_loop`]; files that grow lose what was added since it was saved.
+    /// Restores a saved state in place of [`Process::before_loop`]; files that grow are cut to their length at the time of saving.
     ///
     /// # Errors
     /// The state of another kind of process; a file that is no longer there.

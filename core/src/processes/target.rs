@@ -179,7 +179,7 @@ pub(super) fn vector_variable(settings: &Settings) -> Result<[ScalarVariable; 3]
     }
 }
 
-/// An error where what constraints relate is not an unknown of the system; `place` is where the deck names it.
+/// An error where constraints relate a variable that is not an unknown of the system; `place` is where the deck names it.
 ///
 /// # Errors
 /// `not-an-unknown`.

@@ -1,4 +1,4 @@
-//! Keeps account of what acts in accepted steps: see [`Balance`].
+//! Balance of forces and energies in accepted steps: see [`Balance`].
 
 use serde::{Deserialize, Serialize};
 
@@ -153,7 +153,7 @@ impl<'a> Pairs<'a> {
         Self { part, centre, states, firsts, sums }
     }
 
-    /// Adds what an entity does to one unknown of a pair.
+    /// Adds the force of an entity on one unknown of a pair.
     fn push(&mut self, system: &System, push: Push) {
         let dof = system.dofs.dofs()[push.number as usize];
         if !dof.moves_mesh() {
@@ -199,7 +199,7 @@ impl<'a> Pairs<'a> {
     }
 }
 
-/// The forces of each kind over all unknowns; those of elements are what the others leave of the residual. Collective.
+/// The forces of each kind over all unknowns; those of elements are the remainder of the residual. Collective.
 fn forces(
     part: &ModelPart,
     system: &System,
@@ -293,7 +293,7 @@ fn sums(
 }
 
 impl Sums {
-    /// The kinds with what is left over, to which `between` is added; `others` are sizes to compare with.
+    /// The kinds with the remainder, to which `between` is added; `others` are sizes to compare with.
     fn of(kinds: [[f64; 3]; KINDS + 1], between: [f64; 3], others: impl Iterator<Item = f64>) -> Self {
         let [loads, elements, interactions, inertia, reactions, left] = kinds;
         let out_of_balance = add(left, between);

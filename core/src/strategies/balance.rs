@@ -1,4 +1,4 @@
-//! The balance of an accepted step: what acts, what holds, what is left over, and where the energy went.
+//! The balance of an accepted step: loads, reactions, remainder and energies.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,8 +15,8 @@ pub struct Balance {
     pub energies: Energies,
 }
 
-/// Sums of what acts on one unknown, over all nodes: loads + elements + interactions + inertia + reactions = 0 but for what is
-/// out of balance.
+/// Sums of forces on one unknown, over all nodes: loads + elements + interactions + inertia + reactions = 0 but for the out-of-balance
+/// remainder.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self")]
 pub struct UnknownBalance {
@@ -35,7 +35,7 @@ pub struct UnknownBalance {
 
 left_out_of_json!(UnknownBalance, "flows");
 
-/// Flows into, out of and within the body: entering − leaving + elements + interactions = stored but for what is out of balance.
+/// Flows into, out of and within the body: entering − leaving + elements + interactions = stored but for the out-of-balance remainder.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flows {
     /// Input by loads and supports, summed node by node (power).
@@ -53,15 +53,16 @@ pub struct Sums {
     pub loads: [f64; 3],
     /// Reactions of supports and of constraints to fixed unknowns.
     pub reactions: [f64; 3],
-    /// Internal forces: nothing but where elements hold to the ground, or turn around an axis; of heat, what flow carries in.
+    /// Internal forces: zero unless elements are connected to the ground or rotate about an axis; of heat, the convected inflow.
     pub elements: [f64; 3],
     /// Interactions on both sides: nothing where they act between bodies.
     pub interactions: [f64; 3],
-    /// Minus what inertia, damping and storage take up.
+    /// Minus the forces of inertia, damping and storage.
     pub inertia: [f64; 3],
     /// Remainder on unsupported unknowns, and between the sides of pairs.
     pub out_of_balance: [f64; 3],
-    /// Its size by that of the largest of the others, a pair's and what loads and supports push one way among them.
+    /// Its size relative to that of the largest of the others, including the force of a pair and the one-sided sums of loads and
+    /// supports.
     pub relative: f64,
 }
 
@@ -93,7 +94,7 @@ pub struct PairBalance {
 /// Energies since the stage began, of unknowns that have inertia; works by the trapezoidal rule over steps.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
-    /// Work against internal forces: strain energy, and what materials have dissipated.
+    /// Work against internal forces: strain energy, and dissipation of materials.
     pub stored: f64,
     /// Work of loads.
     pub loads: f64,

@@ -48,7 +48,7 @@ pub struct ExplicitSettings {
     pub follow_prescribed: bool,
     /// Whether reactions are computed.
     pub compute_reactions: bool,
-    /// Whether reactions of supports hold what constraints hand on to them.
+    /// Whether reactions of supports include the forces that constraints hand on to them.
     pub reactions_of_constraints: bool,
     /// Whether nodes follow the unknown that moves the mesh.
     pub move_mesh: bool,

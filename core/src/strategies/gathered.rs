@@ -33,7 +33,7 @@ pub(super) struct Gathered {
 /// Flag in the stamps of graphs gathered here, which tells them from graphs of one rank.
 const GATHERED: u64 = 1 << 32;
 
-/// Numbers that say what an equation is: place of its node, meaning, position.
+/// Numbers that describe an equation: place of its node, meaning, position.
 const NUMBERS: usize = 8;
 
 /// All equations on rank 0.
@@ -89,7 +89,7 @@ impl Gathered {
         false
     }
 
-    /// Brings rank 0 up to date with what the ranks have, as far as its stamps have changed; collective.
+    /// Brings rank 0 up to date with the data of the ranks, as far as its stamps have changed; collective.
     pub(super) fn update(&mut self, assembler: &Assembler, loads: Option<&Csr>, dofs: &DofTable, nodes: &Nodes) {
         let (ranks, own) = (assembler.ranks(), assembler.system());
         let Some(numbering) = assembler.numbering() else { return };
@@ -120,7 +120,7 @@ impl Gathered {
         out
     }
 
-    /// Gives every rank what it owns of a vector that rank 0 has; collective.
+    /// Gives every rank its own entries of a vector that rank 0 has; collective.
     pub(super) fn scatter(&self, ranks: &Ranks, whole: &[f64], numbering: &Numbering) -> Vec<f64> {
         let of = |number: usize| whole[self.whole.places[number] as usize];
         let parts: Vec<Vec<f64>> = match ranks.is_root() {
@@ -130,7 +130,7 @@ impl Gathered {
         ranks.exchange_numbers(&parts).swap_remove(0)
     }
 
-    /// Does what the other ranks wait for, with the threads of those on this machine.
+    /// Runs the work that the other ranks wait for, with the threads of those on this machine.
     pub(super) fn while_others_wait<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         let count = threads_while_others_wait();
         if count == parallel::threads() {
@@ -166,7 +166,7 @@ impl Gathered {
         self.whole.meanings.get(equation).copied()
     }
 
-    /// The whole system, on rank 0, and the tangents of follower loads. Its stamps are not those of what ranks share.
+    /// The whole system, on rank 0, and the tangents of follower loads. Its stamps are not those of the shared systems.
     pub(super) fn system<'a>(&'a self, own: &System<'a>) -> (System<'a>, Option<&'a Csr>) {
         let coupling = (self.coupling.sum.entries() > 0).then_some(&self.coupling.sum);
         let loads = (self.loads.sum.entries() > 0).then_some(&self.loads.sum);

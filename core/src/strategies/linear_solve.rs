@@ -20,7 +20,7 @@ const ACCURACY: f64 = 1e-10;
 pub(super) struct Solved {
     /// Increment of the equations.
     pub increment: Vec<f64>,
-    /// Norm of what is left over that of the right-hand side.
+    /// Norm of the residual over that of the right-hand side.
     pub relative_residual: f64,
     /// Krylov iterations, or steps of refinement.
     pub iterations: usize,
@@ -41,7 +41,7 @@ pub(super) enum Failed {
 }
 
 impl Failed {
-    /// The same; what is singular says where nodes are that seem free, one of each part. Collective.
+    /// The same; a singular system also names nodes that seem free, one of each part. Collective.
     pub(super) fn in_part(self, part: &ModelPart) -> Self {
         let Self::Singular(why, ids) = self else { return self };
         let mut bodies: Vec<Option<&str>> = Vec::new();

@@ -37,7 +37,7 @@ registered_kind! {
     }
 }
 
-/// Share of the tolerance of the residual that an iterative engine may leave, and the bounds of what it is asked for.
+/// Factor of the residual's tolerance for an iterative engine, and the bounds of the result.
 const LEFT: f64 = 0.1;
 const TOLERANCES: [f64; 2] = [1e-10, 1e-7];
 

@@ -28,9 +28,9 @@ impl Form {
 /// A tolerance relative to a reference, and one of the norm an unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
-    /// Of the ratio.
+    /// Tolerance of the ratio.
     pub relative: f64,
-    /// Of the norm an unknown, in the unit of the variable.
+    /// Tolerance of the norm an unknown, in the unit of the variable.
     pub absolute: f64,
 }
 
@@ -62,7 +62,7 @@ pub struct Measure {
     pub form: Form,
     /// Unknowns that are measured.
     pub block: Block,
-    /// Against what.
+    /// Tolerances to compare with.
     pub tolerance: Tolerance,
     /// Whether each variable is measured by itself.
     pub apart: bool,
@@ -78,7 +78,7 @@ impl Measure {
         Ok(Self { form, block, tolerance: Tolerance::read(settings, stem)?, apart: !sums.unwrap_or(false) })
     }
 
-    /// Of all unknowns, with the tolerances of the solver settings.
+    /// Measure of all unknowns, with the tolerances of the solver settings.
     ///
     /// # Errors
     /// Settings of another type.

@@ -52,7 +52,7 @@ pub struct NewtonSettings {
     pub linear: bool,
     /// Whether reactions are computed.
     pub compute_reactions: bool,
-    /// Whether reactions of supports hold what constraints hand on to them.
+    /// Whether reactions of supports include the forces that constraints hand on to them.
     pub reactions_of_constraints: bool,
     /// Whether nodes follow the unknown that moves the mesh.
     pub move_mesh: bool,
@@ -94,7 +94,7 @@ pub struct NewtonRaphson {
 #[serde(remote = "Self")]
 struct NewtonState {
     failed: bool,
-    /// Of redundant constraints, and of multipliers that are not condensed.
+    /// Whether redundant constraints, and multipliers that are not condensed, have been warned of.
     warned: [bool; 2],
     scheme: Option<Box<dyn State>>,
     solver: Option<Box<dyn State>>,
@@ -410,7 +410,7 @@ impl NewtonRaphson {
         Ok(())
     }
 
-    /// Warns, once a run, that constraints of interactions repeat what others ask for.
+    /// Warns, once a run, of redundant constraints of interactions.
     pub(super) fn warn_of_redundancy(&mut self, why: &str) {
         if std::mem::replace(&mut self.warned, true) {
             return;
@@ -442,7 +442,7 @@ impl NewtonRaphson {
         }
     }
 
-    /// The largest entry of what is out of balance and its unknown, in words; collective.
+    /// The largest out-of-balance entry and its unknown, in words; collective.
     pub(super) fn largest_residual(&self, part: &ModelPart, system: &System, balanced: &[f64]) -> Option<String> {
         let size = |n: u32| balanced[n as usize].abs();
         let unknowns = self.assembler.equations().unknowns().iter().copied();
@@ -483,7 +483,7 @@ impl NewtonRaphson {
     }
 }
 
-/// Where a node is and what interactions say of its state, where one does.
+/// Position of a node and its state in an interaction, where it has one.
 fn state_of(part: &ModelPart, system: &System, id: usize) -> Option<String> {
     let node = part.nodes.ids.binary_search(&id).ok()? as u32;
     let state = system.interactions.iter().find_map(|interaction| interaction.node_state(node))?;

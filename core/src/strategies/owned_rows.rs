@@ -18,7 +18,7 @@ use crate::model::Nodes;
 /// The rows of this rank and the solver over all of them.
 pub(super) struct OwnedRows {
     solver: DistributedSolver,
-    /// Stamps of what the pattern and the values were made of.
+    /// Stamps of the sources of the pattern and the values.
     made_of: Option<[u64; 4]>,
     graph: u64,
     stamp: u64,
@@ -42,7 +42,7 @@ pub(super) struct OwnedRows {
     _ranks: Ranks,
 }
 
-/// The equations of this rank and what they stand for.
+/// The equations of this rank and their meaning.
 #[derive(Clone, Copy)]
 struct Here<'a> {
     assembler: &'a Assembler,
@@ -122,8 +122,8 @@ impl OwnedRows {
     /// has; collective.
     ///
     /// # Errors
-    /// Those of [`DistributedSolver::solve`], with equations that [`OwnedRows::meaning`] knows; [`crate::Error::System`] when
-    /// PETSc cannot start.
+    /// Errors of [`DistributedSolver::solve`], with equations that [`OwnedRows::meaning`] knows; [`crate::Error::System`] when PETSc
+    /// cannot start.
     pub(super) fn solve(
         &mut self,
         assembler: &Assembler,

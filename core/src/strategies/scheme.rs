@@ -1,4 +1,4 @@
-//! Time schemes: what inertia adds to the system, and how rates follow displacements.
+//! Time schemes: the inertia terms of the system, and the rates from displacements.
 
 use zelus_linear_algebra::State;
 
@@ -56,7 +56,7 @@ pub trait Scheme: Send {
         None
     }
 
-    /// Step start: what inertia and damping were at the end of the last step, when the scheme has still to be told.
+    /// Step start: inertia and damping at the end of the last step, when the scheme has still to be told.
     ///
     /// [`Scheme::keep`] is then called with the forces that come of it.
     fn past_inertia(&self, _part: &ModelPart, _dofs: &DofTable) -> Option<Inertia> {
@@ -84,7 +84,7 @@ pub trait Scheme: Send {
         Ok(())
     }
 
-    /// Step start: what it keeps of forces, for changes.
+    /// Step start: the forces that it keeps, for changes.
     fn kept(&mut self) -> Option<&mut Vec<f64>> {
         None
     }
@@ -97,7 +97,7 @@ pub(super) fn predict_ballistic(part: &mut ModelPart, dofs: &DofTable) {
     predict(part, dofs, |n| u[n] + dt * v[n] + 0.5 * dt * dt * a[n]);
 }
 
-/// Moves free unknowns with rates to what is guessed of each.
+/// Moves free unknowns with rates to their predicted values.
 pub(super) fn predict(part: &mut ModelPart, dofs: &DofTable, guess: impl Fn(usize) -> f64) {
     let mut values = dofs.column(part, UNKNOWN, 0);
     for (number, dof) in dofs.dofs().iter().enumerate() {

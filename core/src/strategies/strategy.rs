@@ -25,8 +25,8 @@ pub trait SolutionStrategy: Send {
         true
     }
 
-    /// An attempt at a step has failed: takes up another way to iterate until a step is accepted, and says which; `None` where none would
-    /// mend what failed, or where the other way is what has failed and is given up.
+    /// An attempt at a step has failed: takes up another way to iterate until a step is accepted, and names it; `None` where none would
+    /// help, or where the other way itself has failed and is given up.
     fn other_way(&mut self, _failed: &StepRecord) -> Option<&'static str> {
         None
     }
@@ -64,7 +64,7 @@ pub trait SolutionStrategy: Send {
         Vec::new()
     }
 
-    /// Warnings of what has not happened in any step to interactions of its own, asked for once after the last.
+    /// Warnings of events that never happened in any step to interactions of its own, asked for once after the last.
     fn last_messages(&self, _part: &ModelPart) -> Vec<Diagnostic> {
         Vec::new()
     }
@@ -136,7 +136,7 @@ pub(super) fn relaxation(interactions: &[Box<dyn Interaction>]) -> Option<f64> {
     interactions.iter().filter_map(|interaction| interaction.coupling()).find_map(|coupling| coupling.relaxation())
 }
 
-/// Lets interactions follow an update of the unknowns; what changed in all of them.
+/// Lets interactions follow an update of the unknowns; returns the changes in all of them.
 ///
 /// # Errors
 /// A pair that cannot be computed.
@@ -159,7 +159,7 @@ pub(super) fn is_of_entities(error: &Error) -> bool {
     matches!(error, Error::Input(problems) if problems.iter().all(|problem| problem.code == "entity"))
 }
 
-/// Runs `solve` and puts down what came of it: iterations and the reason of a failure.
+/// Runs `solve` and records the outcome: iterations and the reason of a failure.
 ///
 /// # Errors
 /// As `solve`, but an entity that cannot be computed becomes the reason of a failure.

@@ -1,4 +1,4 @@
-//! How a stage reaches the end of one of the deck's steps: attempts, cut where they do not converge, and what follows those that do.
+//! Attempts at a step of the deck: cut where they do not converge, accepted where they do.
 
 use std::time::Instant;
 

@@ -111,7 +111,7 @@ impl Stage {
         &self.system
     }
 
-    /// Keeps other runs from writing what this one does.
+    /// Keeps other runs from writing the outputs of this one.
     fn claim(&mut self, ranks: &Ranks) -> Result<()> {
         let outputs = self.files.iter().filter_map(FileUse::output).filter(|_| ranks.is_root());
         self.claims = Some(ranks.agree(outputs.map(Claim::of).collect())?);
@@ -152,7 +152,7 @@ impl Stage {
         }
     }
 
-    /// Takes up what it remembered between steps; `model` is that of then.
+    /// Restores its state between steps; `model` is the saved one.
     ///
     /// # Errors
     /// States of another deck; files of output that are not there any more.
@@ -210,11 +210,11 @@ impl Stage {
         self.reach(target, run).map(|()| true)
     }
 
-    /// Finalises the processes, also after a step that has failed, or suspends them where the stage goes on later; what elements remember
-    /// goes to `systems`.
+    /// Finalises the processes, also after a step that has failed, or suspends them where the stage goes on later; the states of
+    /// elements go to `systems`.
     ///
     /// # Errors
-    /// `result`, the end of the last step, or else what a process has met.
+    /// `result`, the end of the last step, or else the error of a process.
     pub(super) fn finish(
         mut self,
         (result, goes_on): (Result<()>, bool),
@@ -249,7 +249,7 @@ impl Stage {
         result.and(finalized).and(finals.finish().map(|_| ()))
     }
 
-    /// Hands on what processes, interactions and the strategy have to tell; collective.
+    /// Passes on the messages of processes, interactions and the strategy; collective.
     fn pass_on_messages(&mut self, run: &mut RunContext<'_>) {
         let mut own = self.strategy.messages();
         own.extend(messages_of(&mut self.processes, &mut self.system));

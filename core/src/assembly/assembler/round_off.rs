@@ -9,7 +9,8 @@ use crate::assembly::reach::reach;
 use crate::assembly::rows::ROWS;
 use crate::model::ModelPart;
 
-/// Largest stiffness of an interaction in those of the bodies: what a stiff penalty adds to the round-off of forces.
+/// Largest stiffness of an interaction, relative to that of the bodies, that counts in round-off: a stiff penalty adds to the round-off
+/// of forces.
 const STIFFEST: f64 = 100.0;
 
 impl Assembler {

@@ -42,7 +42,7 @@ impl Assembler {
         }
     }
 
-    /// Takes up what it remembered of the same part and system.
+    /// Restores the state of the same part and system.
     ///
     /// # Errors
     /// A state of another part or system.

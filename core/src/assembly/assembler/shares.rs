@@ -26,8 +26,8 @@ pub struct Push {
 impl Assembler {
     /// External forces of elements and conditions, over all unknowns; collective.
     ///
-    /// Loads that depend on the state count as they are; of conditions with a constant tangent, as springs, only what they state
-    /// apart.
+    /// Loads that depend on the state count as they are; of conditions with a constant tangent, as springs, only the loads that they
+    /// state apart.
     ///
     /// # Errors
     /// An entity that cannot be computed.
@@ -55,7 +55,7 @@ impl Assembler {
         Ok(out)
     }
 
-    /// Minus what elements store by their own equations, over all unknowns; collective.
+    /// Minus the storage of elements by their own equations, over all unknowns; collective.
     ///
     /// # Errors
     /// An entity that cannot be computed.

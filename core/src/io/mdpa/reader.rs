@@ -161,7 +161,7 @@ impl<'a> Reader<'a> {
             .push(line, Diagnostic::error("unknown-block", format!("there is no block `{kind}`")).remedy(remedy));
     }
 
-    /// Skips what is left of a block and of the blocks in it.
+    /// Skips the rest of a block and of the blocks in it.
     pub(super) fn skip_block(&mut self, open: Open) {
         let mut depth = 1;
         while let Some(word) = self.tokens.word() {

@@ -12,7 +12,7 @@ use crate::geometry::Shape;
 
 /// Text between the tags of a file and its arrays.
 const MARK: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
-/// Most bytes of an array: what is damaged must not fill the memory.
+/// Most bytes of an array: damaged lengths must not fill the memory.
 const MOST: u64 = 1 << 34;
 
 /// The columns that hold the ids of points and of cells, where they are written.

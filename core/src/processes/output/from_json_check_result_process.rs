@@ -41,7 +41,7 @@ struct FromJsonCheck {
     messages: Vec<Diagnostic>,
 }
 
-/// Values that differ, in words: beyond all bounds, and only by what the reference itself leaves open.
+/// Values that differ, in words: beyond all bounds, and only within the uncertainty of the reference.
 #[derive(Default)]
 struct Differences {
     wrong: Vec<String>,

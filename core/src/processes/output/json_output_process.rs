@@ -68,7 +68,7 @@ stored_as_bytes!(JsonOutputState);
 
 #[typetag::serde(name = "json_output")]
 impl State for JsonOutputState {
-    /// Every rank gets what the first had, which is all.
+    /// Every rank gets the complete list of the first one.
     fn carry(&mut self, _carrier: &mut dyn Carrier) {
         self.regrouped = true;
     }
@@ -397,7 +397,7 @@ impl Process for JsonOutput {
         Ok(())
     }
 
-    /// A run that fails before the first step leaves what an earlier one has written.
+    /// A run that fails before the first step leaves the file of an earlier one.
     fn finalize(&mut self, model: &mut Model) -> Result<()> {
         if self.series.times.is_empty() && self.file.exists() { Ok(()) } else { self.write(model) }
     }

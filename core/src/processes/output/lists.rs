@@ -1,4 +1,4 @@
-//! Whether the lists of a deck name what is where they look for it.
+//! Checks that the names in the lists of a deck exist in the place that each list refers to.
 
 use super::gauss::is_known;
 use super::quantity::{GaussQuantity, Quantity};

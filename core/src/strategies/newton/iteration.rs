@@ -20,7 +20,7 @@ const HALF: f64 = 0.5;
 /// How often an increment that turns elements inside out is halved.
 const HALVINGS: usize = 4;
 
-/// Phases of the interactions: finding what may meet, and deciding what acts, with what is found late.
+/// Phases of the interactions: the search for pairs, and the update of their states with pairs found late.
 const SEARCH: &str = "interactions: search";
 const STATES: &str = "interactions: states";
 
@@ -50,8 +50,8 @@ struct Step {
 }
 
 impl Step {
-    /// The relative residual a linear solve may leave, so that what it leaves counts nothing beside the tolerances; none in
-    /// the first iteration, which may be the last.
+    /// The relative residual that a linear solve may leave, small beside the tolerances; none in the first iteration, which may be the
+    /// last.
     fn needed(&self) -> f64 {
         let missing = |check: &Check| {
             (check.ratio_tolerance / check.ratio).max(check.absolute_tolerance / check.absolute).min(1.0)
@@ -334,7 +334,7 @@ impl NewtonRaphson {
         }
     }
 
-    /// Moves by what was solved for and what is prescribed; gives the increment of all unknowns.
+    /// Applies the increments of solved and prescribed unknowns; returns the increment of all unknowns.
     fn take(&mut self, solved: &Solved, step: &mut Step, part: &mut ModelPart, system: &System) -> Result<Vec<f64>> {
         let mut increment = self.assembler.equations().expand(&solved.increment);
         let is_still = !has_motion(&part.ranks, &step.prescribed);
@@ -352,8 +352,9 @@ impl NewtonRaphson {
         Ok(increment)
     }
 
-    /// Lets the interactions follow the motion, and takes the residual of the state they decide on; `restart` where they only
-    /// keep what the answer takes from the first iterate. Where elements cannot be computed there, less is taken of `increment`, if it is given.
+    /// Lets the interactions follow the motion, and takes the residual of the state they decide on; `restart` where they only keep the
+    /// values that the solution takes from the first iterate. Where elements cannot be computed there, less is taken of `increment`, if
+    /// it is given.
     fn decide(
         &mut self,
         iteration: usize,
@@ -389,7 +390,7 @@ impl NewtonRaphson {
         Ok(change)
     }
 
-    /// Goes back by half of the increment, and by half of what is left, until elements can be computed; gives the residual there.
+    /// Goes back by half of the increment, and by half of the remainder, until elements can be computed; returns the residual there.
     ///
     /// # Errors
     /// `why` they could not be computed, where the least share does not help.
@@ -457,7 +458,7 @@ impl NewtonRaphson {
         Ok(Turn::On)
     }
 
-    /// The equations and patterns of what acts now.
+    /// The equations and sparsity patterns of the active interactions.
     fn lay_out(&mut self, part: &ModelPart, system: &System) -> Result<()> {
         let start = Instant::now();
         let result = self.assembler.begin_step(part, system);

@@ -17,7 +17,7 @@ pub(in crate::strategies) struct References {
     pub start: Vec<Vec<f64>>,
     /// After the last change of state.
     pub switched: Option<Vec<f64>>,
-    /// Sizes of the forces at the start by variable: loads, reactions and what is out of balance.
+    /// Sizes of the forces at the start by variable: loads, reactions and out-of-balance forces.
     forces: Vec<f64>,
 }
 
