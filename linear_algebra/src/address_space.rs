@@ -1,4 +1,4 @@
-//! How much address space a process may have (`ulimit -v`), and what a thread reserves of it.
+//! Address space of a process (`ulimit -v`), and the share that a thread reserves.
 //!
 //! The dense kernels of the library below give each thread that multiplies matrices a workspace of twice the third cache of the
 //! whole machine. Most of its pages are never touched, so that it is no memory; but it counts against a limit of addresses, and

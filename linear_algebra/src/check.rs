@@ -169,7 +169,7 @@ pub(crate) fn magnitude(system: &System<'_>, x: &[f64]) -> Vec<f64> {
     (0..x.len()).map(|i| if system.layout.is_held(i) { 0.0 } else { of_row(i) }).collect()
 }
 
-/// Whether the residual of `x` is what rounding leaves of the products it is made of, so that no method does better.
+/// Whether the residual of `x` is the rounding error of its own products, so that no method does better.
 pub(crate) fn is_rounding(system: &System<'_>, rhs: &[f64], x: &[f64]) -> bool {
     let mut residual = vec![0.0; x.len()];
     system.residual(rhs, x, &mut residual) <= ROUNDING * vector::norm(&magnitude(system, x))

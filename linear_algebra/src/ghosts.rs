@@ -19,10 +19,10 @@ pub trait Processes: Send + Sync {
     /// As [`Processes::exchange_numbers`], where `counts` says how many come from each process.
     fn exchange_counted(&self, parts: &[Vec<f64>], counts: &[usize]) -> Vec<Vec<f64>>;
 
-    /// Sends `parts[r]` to process r; gives what each process sent here.
+    /// Sends `parts[r]` to rank r; returns the numbers from each rank.
     fn exchange_numbers(&self, parts: &[Vec<f64>]) -> Vec<Vec<f64>>;
 
-    /// Sends `parts[r]` to process r; gives what each process sent here.
+    /// Sends `parts[r]` to rank r; returns the indices from each rank.
     fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>>;
 }
 
@@ -99,7 +99,7 @@ impl Ghosts {
         all
     }
 
-    /// Of each place, whether it is that of an own item.
+    /// Mask of places of own items.
     pub(crate) fn is_own(&self) -> Vec<bool> {
         let mut is_own = vec![false; self.all];
         match self.places.is_empty() {
@@ -146,7 +146,7 @@ impl Ghosts {
         for_each(&self.received, arrived, width, |at, value| values[at] = T::from_f64(value));
     }
 
-    /// Adds what ghosts hold to the items of their owners; collective.
+    /// Adds the values of ghosts to the items of their owners; collective.
     pub(crate) fn collect(&self, values: &mut [f32], width: usize) {
         let Some(processes) = &self.processes else { return };
         let arrived = processes.exchange_counted(&packed(&self.received, values, width), &counts(&self.sent, width));

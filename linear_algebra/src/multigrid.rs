@@ -29,8 +29,8 @@ const PAYS: [f64; 2] = [10.0, 3.0];
 const REACHED: f64 = 1e-4;
 /// Largest share of a residual that a solve may leave.
 const COARSEST_AIM: f64 = 0.5;
-/// Accuracy of a solve, as a share of what the one before was worth to the whole system: beyond it the constraints that the blocks
-/// leave out count.
+/// Accuracy of a solve, relative to the gain of the one before for the whole system: beyond it the constraints that the blocks leave
+/// out count.
 const WORTH: f64 = 0.3;
 /// Growth of the iterations by digit, and their number beside it, from which on the hierarchy is made anew.
 const STALE: (f64, f64) = (1.3, 0.3);
@@ -85,14 +85,14 @@ impl Hierarchy {
     }
 }
 
-/// The engine [`crate::Engine::Multigrid`]; the direct engine takes over what it cannot do, and the report says so.
+/// The engine [`crate::Engine::Multigrid`]; the direct engine takes over systems that it cannot solve, and the report says so.
 pub(crate) struct MultigridSolver {
     settings: MultigridSettings,
     constrained: Option<(Constrained, Stamps)>,
     left: LatestBlocks,
     /// Stamps of the bulk that has been looked at last, and its equations that are zero.
     seen: Option<([u64; 2], Vec<usize>)>,
-    /// Of the bulk's rows, with the stamp of its graph.
+    /// Runs of the bulk's rows, with the stamp of its graph.
     runs: Option<(u64, Runs)>,
     hierarchy: Option<Hierarchy>,
     learnt: Learnt,
@@ -118,7 +118,7 @@ struct Learnt {
 #[serde(remote = "Self")]
 struct MultigridState {
     learnt: Learnt,
-    /// That of an earlier matrix than the last.
+    /// Hierarchy of an earlier matrix than the last.
     hierarchy: Option<Hierarchy>,
     stand_in: Option<Box<dyn State>>,
 }
@@ -156,7 +156,7 @@ impl MultigridSolver {
         solved
     }
 
-    /// Whether multigrid is to solve a system, by its size and what came of it before.
+    /// Whether multigrid is to solve a system, by its size and the outcome of earlier solves.
     fn serves(&self, system: &System<'_>) -> bool {
         self.shares(system.free(), system.bulk.entries())
     }

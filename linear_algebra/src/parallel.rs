@@ -116,7 +116,7 @@ pub fn copied<T: Copy + Send + Sync>(values: &[T], length: usize) -> Vec<T> {
     out
 }
 
-/// Those of `0..count` for which `is_so`, ascending; `length` of them are a task.
+/// Indices of `0..count` for which `is_so`, ascending; `length` of them are a task.
 ///
 /// # Panics
 /// As [`ranges`].

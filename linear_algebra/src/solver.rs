@@ -1,4 +1,4 @@
-//! The one interface of all solvers, what they report and how they fail.
+//! The one interface of all solvers, their reports and errors.
 
 use crate::condensation::{CondensationSettings, NotCondensable};
 use crate::csr::Csr;
@@ -64,12 +64,12 @@ pub enum SolveError {
     /// The multipliers cannot be condensed, and the settings allow no other way.
     #[error("the multipliers cannot be condensed: {0}")]
     NotCondensable(NotCondensable),
-    /// The input is unusable or the machine gave up; the text says what happened.
+    /// The input is unusable or the machine gave up; the text names the cause.
     #[error("{0}")]
     Failed(String),
 }
 
-/// A solver of sparse linear systems that keeps what it can reuse between solves.
+/// A solver of sparse linear systems that keeps reusable data between solves.
 pub trait LinearSolver: Send {
     /// Name of the engine, as in [`SolveReport::engine`].
     fn name(&self) -> &'static str;
@@ -95,7 +95,7 @@ pub trait LinearSolver: Send {
         None
     }
 
-    /// Takes up what another of its kind has learnt from the same systems.
+    /// Restores the state that another of its kind has from the same systems.
     ///
     /// # Errors
     /// The state of another kind.
@@ -103,7 +103,7 @@ pub trait LinearSolver: Send {
         Ok(())
     }
 
-    /// Says what relative residual is enough for the next solves; engines ask no more of themselves than their settings do.
+    /// Sets the relative residual that is enough for the next solves; engines ask no more of themselves than their settings do.
     fn aim(&mut self, _: f64) {}
 
     /// Bytes that it takes beside the matrix, about, for systems of this size; 0 where that is not known.
@@ -132,7 +132,7 @@ pub trait LinearSolver: Send {
     }
 }
 
-/// Which solver to create, with its settings.
+/// Kind of solver to create, with its settings.
 #[derive(Debug, Clone)]
 pub enum Engine {
     /// Multifrontal factorisation with the interface in a dense Schur complement; the default.

@@ -11,15 +11,15 @@ use serde::{Deserialize, Serialize};
 /// `#[typetag::serde] impl State for …`, whose name tags it in the file.
 #[typetag::serde]
 pub trait State: Any + Send + Sync {
-    /// Shows what it holds of nodes and unknowns to a carrier, which takes it to other ranks, and drops what is cheap to make again and
-    /// belongs to the ranks it was made on. The sequence of its calls must not depend on which of the ranks it is.
+    /// Shows its data of nodes and unknowns to a carrier, which maps them to other ranks, and drops data that are cheap to make again
+    /// and belong to the old ranks. The sequence of its calls must not depend on which of the ranks it is.
     fn carry(&mut self, carrier: &mut dyn Carrier);
 }
 
-/// Takes what ranks remember to other ranks that run the same deck.
+/// Maps states of ranks to other ranks that run the same deck.
 ///
-/// It is shown the states of all ranks that were, then that of one to come as it begins, and at last that of the first rank once
-/// more, into which it puts what the one to come is to remember.
+/// It visits the states of all earlier ranks, then that of a new one at its start. At last it visits that of the first rank once more,
+/// and writes the state of the new one into it.
 pub trait Carrier {
     /// Indices of nodes that every rank has.
     fn nodes(&mut self, nodes: &mut [u32]);

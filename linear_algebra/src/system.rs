@@ -62,7 +62,7 @@ impl Layout {
     }
 }
 
-/// The equations `(bulk + coupling) x = b`, with stamps that tell what changed since the last solve.
+/// The equations `(bulk + coupling) x = b`, with stamps that tell changes since the last solve.
 ///
 /// `coupling` touches few equations (the contact interface: slave and master displacements and multipliers); rows of
 /// multipliers are empty in `bulk`. A stamp that equals the one of the previous solve with the same solver promises
@@ -87,9 +87,9 @@ pub struct System<'a> {
     pub coupling_values: u64,
     /// Whether `coupling` is symmetric.
     pub coupling_symmetric: bool,
-    /// Which equations are those of other processes, where several share the system: own rows are complete, those of ghosts
-    /// only where multipliers act on their node. The bulk then has rows for the first equations alone, and the coupling the
-    /// rest of them. `None` where all equations are here.
+    /// Equations of other ranks, where several share the system: own rows are complete, those of ghosts only where multipliers act on
+    /// their node. The bulk then has rows for the first equations alone, and the coupling the rest of them. `None` where all equations
+    /// are here.
     pub shared: Option<&'a Ghosts>,
 }
 
@@ -125,7 +125,7 @@ impl<'a> System<'a> {
         self.equations() - self.layout.held.iter().filter(|is_held| **is_held).count()
     }
 
-    /// Sets what belongs to equations that are held to zero.
+    /// Sets the entries of inactive rows to zero.
     pub fn clear_held(&self, values: &mut [f64]) {
         let held = &self.layout.held;
         let known = values.len().min(held.len());
@@ -209,7 +209,7 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Which equations are here and which are others'.
+    /// Own equations and those of other ranks.
     pub(crate) fn ghosts(&self) -> Ghosts {
         self.shared.cloned().unwrap_or_else(|| Ghosts::none(self.equations()))
     }

@@ -163,7 +163,7 @@ impl DirectSolver {
         needed
     }
 
-    /// Makes `way` ready for `system`, reusing what the stamps allow; `None` when the matrix does not suit the way.
+    /// Makes `way` ready for `system`, with the reuse that the stamps allow; `None` when the matrix does not suit the way.
     fn prepare(&mut self, way: Way, system: &System<'_>) -> Result<Option<Path>, SolveError> {
         let stamps = Stamps::of(system);
         let (old, old_stamps) = match self.current.take() {

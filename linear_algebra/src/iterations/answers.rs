@@ -1,8 +1,8 @@
 //! Answers of earlier solves as the start of the next one.
 //!
-//! Loads that grow over steps and a tangent that changes little make answers that are nearly combinations of those before.
-//! The start is the combination `x = Σ y_i x_i` that leaves the least `‖b - A x‖` (Fischer, Comput. Methods Appl. Mech.
-//! Engrg. 163 (1998)), with the matrix of the present solve: what has changed costs digits of the start, never of the answer.
+//! Loads that grow over steps and a tangent that changes little make answers that are nearly combinations of those before. The start is
+//! the combination `x = Σ y_i x_i` that leaves the least `‖b - A x‖` (Fischer, Comput. Methods Appl. Mech. Engrg. 163 (1998)), with the
+//! matrix of the present solve: a changed matrix costs digits of the start, never of the solution.
 
 use std::collections::VecDeque;
 
@@ -20,7 +20,7 @@ const INDEPENDENT: f64 = 1e-7;
 #[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Answer {
-    /// Of a length between one and two: the power of two by which it was divided changes no digit of it or of its product.
+    /// Solution scaled to a length between one and two: division by a power of two changes no digit of it or of its product.
     pub x: Vec<f64>,
     /// Its product with the bulk of a system, with the stamp of the values of that bulk.
     #[serde(skip)]
@@ -71,8 +71,8 @@ impl Answers {
         }
     }
 
-    /// Sets `x` to the combination of answers that leaves the least of `b`, or no more than `enough` times its norm, and gives what
-    /// it leaves; `multiply(answer, y)` is `y = A x`.
+    /// Sets `x` to the combination of previous solutions with the least residual of `b`, or one of no more than `enough` times its
+    /// norm, and returns the residual's norm; `multiply(answer, y)` is `y = A x`.
     pub(crate) fn start(
         &mut self,
         graph: u64,

@@ -1,4 +1,4 @@
-//! Sparse matrices of small dense blocks, in single precision: what the levels of multigrid are made of.
+//! Sparse matrices of small dense blocks, in single precision: the matrices of the levels of multigrid.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -164,7 +164,7 @@ impl BlockMatrix {
         Self::from_rows_with(shape, block, NOTHING_EARLIER, || (), |i, row, ()| fill(i, row))
     }
 
-    /// The same with what `fill` works in, made once for many rows; rows that are those of an earlier matrix are taken from it.
+    /// The same with the work space of `fill`, made once for many rows; rows that are those of an earlier matrix are taken from it.
     pub(super) fn from_rows_with<T: Send>(
         [rows, columns]: [usize; 2],
         [height, width]: [usize; 2],
@@ -351,7 +351,7 @@ impl BlockMatrix {
 
     /// `self (middle right)`.
     ///
-    /// The inner product is bigger than what comes of it, so no more of it is held than the rows under way need.
+    /// The inner product is larger than the result, so only the rows under way are held.
     pub(super) fn times_product(&self, middle: &Self, right: &Self) -> Self {
         let nothing = Arc::new(Part::with_room(0, 0, 0));
         let parts = vec![nothing.clone(); middle.rows.div_ceil(ROWS)];

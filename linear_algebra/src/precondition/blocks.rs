@@ -1,7 +1,7 @@
 //! The reduced system without multipliers: a matrix of node blocks in single precision, and solves with it.
 //!
-//! Vectors are in single precision, too, so an iteration moves a third of the bytes of one with the system itself; what rounding
-//! leaves is corrected by the next solve, for a residual in double precision.
+//! Vectors are in single precision, too, so an iteration moves a third of the bytes of one with the system itself; the next solve
+//! corrects rounding errors, for a residual in double precision.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ pub(crate) struct Blocks {
     pub(super) matrix: Arc<BlockMatrix>,
     /// Divisor of the matrix.
     pub(crate) size: f64,
-    /// Which rows are those of the bulk.
+    /// Mask of rows that are those of the bulk.
     pub(super) of_bulk: Vec<bool>,
     pub(super) ghosts: Ghosts,
 }

@@ -12,7 +12,7 @@ pub(crate) struct LatestBlocks {
 }
 
 impl LatestBlocks {
-    /// Whether a system has the bulk of the last, as far as is known: most rows of what is left are then those of before.
+    /// Whether a system has the bulk of the last, as far as is known: most rows of the reduced system are then those of before.
     pub(crate) fn has_bulk_of(&self, system: &System<'_>) -> bool {
         !self.is_forgotten && self.made.as_ref().is_some_and(|(_, old)| has_same_bulk(old, &Stamps::of(system)))
     }

@@ -131,7 +131,7 @@ impl Aggregates {
         (next, ghosts)
     }
 
-    /// Sends block rows, with a number each, to each process; gives what each sent here. Collective.
+    /// Sends block rows, with a number each, to each rank; returns those from each. Collective.
     fn exchange(
         &mut self,
         processes: &dyn Processes,

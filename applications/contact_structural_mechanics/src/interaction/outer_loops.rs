@@ -1,4 +1,4 @@
-//! The loops around Newton's iteration: the checks of a converged state, and what each changes before the next iteration.
+//! The loops around Newton's iteration: the checks of a converged state, and their changes before the next iteration.
 
 use serde::{Deserialize, Serialize};
 use zelus_core::entities::Outer;
@@ -30,7 +30,7 @@ pub(super) struct OuterLoops {
     impact_error: f64,
     /// Work of contact on bodies in motion.
     pub work: ContactWork,
-    /// Looks for what pairs do not see.
+    /// Check for penetration outside of pairs.
     #[serde(skip)]
     penetration_check: PenetrationCheck,
 }
@@ -69,7 +69,7 @@ impl OuterLoops {
     /// The checks of a converged state, in the order in which one needs the other.
     ///
     /// # Errors
-    /// Those of making blocks; contact that a deck asks for and that is not there.
+    /// Errors of making blocks; contact that a deck asks for and that is not there.
     pub(super) fn judge(
         &mut self,
         part: &mut ModelPart,

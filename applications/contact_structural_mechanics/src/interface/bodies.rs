@@ -1,4 +1,4 @@
-//! The elements behind slave facets, which say what traction acts on them.
+//! The elements behind slave facets, which give the traction on them.
 
 use rustc_hash::FxHashMap;
 use zelus_core::Result;

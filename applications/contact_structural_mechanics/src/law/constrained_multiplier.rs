@@ -1,9 +1,9 @@
 //! Equations of slave nodes that supports hold together with the master surface opposite them.
 //!
-//! Along a component in which both sides are held nothing can move, so that the equation of the multiplier there has no
-//! unknown that could obey it. On a plane of symmetry the traction has no such component: the multiplier keeps what it has,
-//! which is nothing. Elsewhere it follows the multipliers of the facet's other nodes, so that constant tractions are
-//! transmitted exactly: its dual function is shared out among them. The remaining equations of the node:
+//! Along a component in which both sides are held nothing can move, so that the equation of the multiplier there has no unknown that
+//! could obey it. On a plane of symmetry the traction has no such component: the multiplier there stays zero. Elsewhere it follows the
+//! multipliers of the facet's other nodes, so that constant tractions are transmitted exactly: its dual function is shared out among
+//! them. The remaining equations of the node:
 //! - stick: the components that are free;
 //! - slip: k g̃ along m, the free part of the normal, and the law of friction along e, the free tangent; e and m are unit
 //!   vectors, and e is at right angles to m and n.

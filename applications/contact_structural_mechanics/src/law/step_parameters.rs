@@ -75,7 +75,7 @@ pub struct StepParameters {
 }
 
 impl StepParameters {
-    /// c: what gaps and slips of a node of this penalty and area count with against tractions (stress by length).
+    /// c: the factor of gaps and slips of a node of this penalty and area against tractions (stress by length).
     ///
     /// Where forces are augmented, weighted gaps enter them with the penalty, which is the larger part where areas are large
     /// numbers. Where they are not, that of the bodies counts alone: whatever a deck says of penalties, contact is the same.

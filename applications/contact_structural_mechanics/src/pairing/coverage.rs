@@ -1,10 +1,10 @@
 //! Slave nodes at the master's edge: next to nothing of their facets is covered by the master, and that lies at the feet of their
 //! neighbours.
 //!
-//! Where the master ends within a slave facet, the dual functions of the overlap belong to all nodes of the facet, and the
-//! gap of the far ones is extended to where no master is. Over a sliver of width w that gap counts over an area of w², against
-//! which the bodies are infinitely stiff: multipliers of 1e16 then hold what is no contact. The near nodes close the gap of
-//! the sliver on their own.
+//! Where the master ends within a slave facet, the dual functions of the overlap belong to all nodes of the facet, and the gap of the
+//! far ones is extended to where no master is. Over a sliver of width w that gap counts over an area of w², against which the bodies
+//! are infinitely stiff: multipliers of 1e16 then act where there is no contact. The near nodes close the gap of the sliver on their
+//! own.
 
 use zelus_core::geometry::mapping::vector_area;
 use zelus_core::geometry::parts;
@@ -18,7 +18,7 @@ use crate::slave_nodes::{SlaveStates, SlaveSums};
 /// Marks each slave node at the master's edge as isolated: the area that it integrates, as a share of its facets, is less than `least`
 /// of the share of a neighbour, half of that where it is in contact.
 ///
-/// `weight` of a node is what lengths and areas count with about an axis of revolution.
+/// `weight` of a node is the factor of lengths and areas about an axis of revolution.
 pub(crate) fn isolate_beside(
     part: &ModelPart,
     states: &mut SlaveStates,

@@ -1,4 +1,4 @@
-//! D and M of two facets, for what does not need their derivatives: ties, constraints, mapping.
+//! D and M of two facets, without derivatives: for ties, constraints, mapping.
 
 use std::collections::BTreeSet;
 

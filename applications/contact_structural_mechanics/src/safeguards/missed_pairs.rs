@@ -76,7 +76,7 @@ impl Summands<2> for FoundOverlap {
 /// must be integrated in the present configuration.
 ///
 /// # Errors
-/// Those of making blocks.
+/// Errors of making blocks.
 pub(crate) fn missed_pairs(
     part: &ModelPart,
     (pairing, states): (&Pairing, &SlaveStates),

@@ -30,19 +30,19 @@ pub enum GapCheck {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SearchDistance {
-    /// Between the boxes around them: what may overlap is a pair, whatever its size.
+    /// Between the boxes around them: facets that may overlap are a pair, whatever its size.
     BetweenFacets,
     /// Between their centres: masters much larger than the slave may be left out.
     BetweenCentres,
 }
 
-/// Which pairs that bodies come to within a step are taken in before it ends.
+/// Pairs that arise within a step and are added before it ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WithinStep {
     /// All that face nodes in contact or show nodes to be in a master.
     Facing,
-    /// Those of nodes that are in a master by more than the gap at which nodes start in contact.
+    /// Pairs of nodes that are in a master by more than the gap at which nodes start in contact.
     Lost,
 }
 

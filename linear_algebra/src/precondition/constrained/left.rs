@@ -36,7 +36,7 @@ fn add_multiple(sums: &mut [f64], value: f64, vector: &[f64]) {
 struct Scratch {
     /// Equations with the row of the block that they are added to, and their factor in it.
     terms: Vec<(u32, usize, f64)>,
-    /// Of one equation in each row of the block.
+    /// Factor of one equation in each row of the block.
     factors: Vec<f64>,
     /// Entries of the rows at each equation.
     sums: Sums,
@@ -45,7 +45,7 @@ struct Scratch {
 }
 
 impl Constrained {
-    /// Factors of the equations in what gives a multiplier.
+    /// Factors of the equations in the recovery of a multiplier.
     fn recovery(&self, multiplier: u32) -> Vec<(u32, f64)> {
         let group = &self.groups[self.group_of[multiplier as usize] as usize];
         let at = group.slot_of_multiplier(multiplier);

@@ -1,16 +1,16 @@
 //! Multigrid for systems with multipliers: these leave by the constraints themselves.
 //!
-//! Let the multipliers of a node act on its own equations and else on those of masters, as dual multipliers do. Then
-//! ([`elimination`]) the conditions that hold no multiplier prescribe some motions of the node, `u = T û + u_p`, its equations
-//! give its multipliers, and what is left of them is one equation for each motion that is not prescribed: `L K T û`.
-//! For symmetric systems without friction `L = Tᵀ`, and the matrix stays symmetric and positive definite. Each node keeps
-//! its number of unknowns: those prescribed become equations of their own on the diagonal, so that blocks stay of one size.
+//! Let the multipliers of a node act on its own equations and else on those of masters, as dual multipliers do. Then ([`elimination`])
+//! the conditions that hold no multiplier prescribe some motions of the node, `u = T û + u_p`, its equations give its multipliers, and
+//! one reduced equation remains for each motion that is not prescribed: `L K T û`. For symmetric systems without friction `L = Tᵀ`, and
+//! the matrix stays symmetric and positive definite. Each node keeps its number of unknowns: those prescribed become equations of their
+//! own on the diagonal, so that blocks stay of one size.
 //!
-//! Processes that share a system do this for the nodes with multipliers of their own and for those beside their rows, whose
-//! rows they have, too; so each makes its own rows of the blocks, and what is left to exchange are vectors.
+//! Ranks that share a system do this for the nodes with multipliers of their own and for those beside their rows, whose rows they have,
+//! too. So each makes its own rows of the blocks, and only vectors are exchanged.
 //!
-//! This is a preconditioner of the whole system: what it leaves out, such as entries of multipliers on other nodes with
-//! multipliers, costs iterations and no accuracy.
+//! This is a preconditioner of the whole system: neglected entries, such as those of multipliers on other nodes with multipliers, cost
+//! iterations and no accuracy.
 
 mod apply;
 mod elimination;
@@ -387,7 +387,7 @@ impl Constrained {
         bodies
     }
 
-    /// The hierarchy of what is left; collective.
+    /// The hierarchy of the reduced system; collective.
     pub(crate) fn hierarchy(&self, system: &System<'_>, left: &Blocks) -> Multigrid {
         Multigrid::new(
             left.matrix.clone(),
