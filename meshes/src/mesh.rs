@@ -2,7 +2,7 @@
 
 use zelus_core::geometry::Shape;
 
-/// Nodes, cells, named groups of both, and what an input file of a solver says besides.
+/// Nodes, cells, named groups of both, and further contents of an input file of a solver.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
     /// Id of each node, unique.
@@ -17,7 +17,7 @@ pub struct Mesh {
     pub pairs: Vec<Pair>,
     /// Materials by name.
     pub materials: Vec<Material>,
-    /// Which group is of which material.
+    /// Material of each group.
     pub sections: Vec<Section>,
     /// Degrees of freedom that the file holds.
     pub supports: Vec<Support>,
@@ -190,7 +190,7 @@ impl Mesh {
     }
 }
 
-/// A name as a deck can use it: what separates words and parts becomes an underscore.
+/// A name as a deck can use it: separators of words and parts become an underscore.
 pub fn word(name: &str) -> String {
     let name: String = name.trim().trim_matches('"').chars().collect();
     let keeps = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '+');

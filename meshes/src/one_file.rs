@@ -13,7 +13,7 @@ use zelus_core::registry::require;
 
 use super::vtkhdf::write_vtkhdf;
 
-/// Endings of what it writes: last that of the one file, before it those of the pictures of a run that goes on.
+/// Endings of its files: last that of the one file, before it those of the pictures of a run that continues.
 const ENDINGS: [&str; 4] = ["vtu", "pvtu", "pvd", "vtkhdf"];
 const STEPS: &[&str] = ENDINGS.split_at(3).0;
 

@@ -72,7 +72,7 @@ impl Communicator {
         self.largest(i64::from(!own)) == 0
     }
 
-    /// The largest of what the ranks give. Collective.
+    /// The largest number of the ranks. Collective.
     pub(crate) fn largest(self, own: i64) -> i64 {
         let mut largest = own;
         // SAFETY: as above; all ranks take part, as the caller promises.

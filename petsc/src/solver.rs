@@ -1,4 +1,4 @@
-//! Solves distributed systems, keeps what can be reused, and judges every answer by its true residual.
+//! Solves distributed systems, keeps reusable data, and judges every solution by its true residual.
 
 use std::ffi::{CStr, CString, c_int};
 
@@ -83,9 +83,8 @@ impl DistributedSolver {
     /// come, and the report says so.
     ///
     /// # Errors
-    /// The same on all ranks: [`SolveError::Singular`] with equations counted over all ranks,
-    /// [`SolveError::NotConverged`] when the residual stays too large, [`SolveError::Failed`] for input that does not
-    /// fit or is not finite, and for what PETSc reports.
+    /// The same on all ranks: [`SolveError::Singular`] with equations counted over all ranks, [`SolveError::NotConverged`] when the
+    /// residual stays too large, [`SolveError::Failed`] for input that does not fit or is not finite, and for errors of PETSc.
     pub fn solve(
         &mut self,
         matrix: &DistributedMatrix<'_>,

@@ -14,11 +14,11 @@ use crate::residual::Description;
 pub(crate) enum Answer {
     /// Go on.
     Go,
-    /// Do what is done at this point, and ask again.
+    /// Do the work at this point, and ask again.
     Act,
     /// End the run, for this reason.
     Fail(String),
-    /// There is a process of that number, and what its residual is of where it has one; `None` leaves it to the registry.
+    /// There is a process of that number, and the description of its residual where it has one; `None` leaves it to the registry.
     Process(Option<(usize, Option<Description>)>),
     /// Residual and tangent.
     Numbers(Vec<f64>, Vec<f64>),
@@ -53,7 +53,7 @@ impl Lent {
         self.writable.map(|model| unsafe { &mut *model })
     }
 
-    /// The model, to change, and what computes on it.
+    /// The model, to change, and the system that computes on it.
     pub(crate) fn both(&mut self) -> Option<(&mut Model, Option<&System>)> {
         // SAFETY: as above; they are apart.
         self.writable.map(|model| unsafe { (&mut *model, self.system.map(|system| &*system)) })

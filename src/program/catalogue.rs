@@ -99,7 +99,7 @@ pub(super) fn describe(name: &str) -> Result<()> {
     Err(Diagnostic::error("unknown-name", format!("nothing is registered as {name:?}")).remedy(remedy).into())
 }
 
-/// Says where the work of a known name is done, its shapes, or what to use instead; whether there was anything.
+/// Prints where the work of a known name is done, its shapes, or its replacement; returns whether there was anything.
 fn answered(name: &str) -> Result<bool> {
     let done = done_here(name)?;
     if let Some(sentence) = &done {

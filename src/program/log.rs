@@ -36,7 +36,7 @@ impl Log {
         Ok(log)
     }
 
-    /// Adds what is said now.
+    /// Adds a line of output.
     pub(super) fn line(&mut self, text: &str) {
         self.raw(&format!("{:10.3} {text}", self.begun.elapsed().as_secs_f64()));
     }

@@ -7,7 +7,7 @@ use zelus_core::strategies::Plan;
 /// Shares of a stage below which no time is guessed from them.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// Step, share of the stage that is done, and what is under way.
+/// Step, share of the stage that is done, and the present phase.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
     plan: Option<Plan>,

@@ -76,7 +76,7 @@ pub(super) fn run(arguments: &RunArguments, ranks: &Ranks, ran: &mut bool) -> Re
     Ok(ended.code())
 }
 
-/// The deck and what of the command line changes its results or their place.
+/// The deck and the arguments of the command line that change its results or their place.
 fn words(arguments: &RunArguments) -> String {
     let mut words = vec![arguments.file.display().to_string()];
     words.extend(arguments.like.iter().map(|like| format!("--like {like}")));
@@ -85,7 +85,7 @@ fn words(arguments: &RunArguments) -> String {
     words.join(" ")
 }
 
-/// A program in Python is no deck: says what runs it.
+/// A program in Python is no deck: names the program that runs it.
 fn refuse_script(file: &Path) -> Result<()> {
     if file.extension().is_none_or(|ending| ending != "py") {
         return Ok(());

@@ -28,8 +28,8 @@ pub(super) struct RunArguments {
     /// Rows of the sweep that run at a time, which share the cores; as many as there are cores when not given.
     #[arg(short, long, value_name = "N", requires = "sweep")]
     pub jobs: Option<usize>,
-    /// Go on from the latest saved run of the deck, with the bits of a run that was not stopped; from the start where
-    /// none was saved. Of a sweep, make the rows that are not done.
+    /// Restart from the latest saved run of the deck, bitwise identical to a run that was not stopped; from the beginning
+    /// where none was saved. For a sweep, run the rows that are not done.
     #[arg(long)]
     pub resume: bool,
     /// Say nothing but warnings and errors.

@@ -231,20 +231,20 @@ fn of_node(node: &Node, path: &str, defaults: &Defaults) -> Value {
     schema
 }
 
-/// For each entry of a kind with settings: where `key` names it, what then holds.
+/// For each entry of a kind with settings: the schema that holds where `key` names it.
 fn choices(key: &str, kind: &str, then: impl Fn(Value) -> Value) -> Vec<Value> {
     let with_settings = entries(kind).into_iter().filter(|entry| !entry.defaults.is_empty());
     let choice = |entry: &'static Entry| json!({ "if": is_called(key, entry), "then": then(reference(kind, entry)) });
     with_settings.map(choice).collect()
 }
 
-/// That `key` names the entry, with or without words before a dot.
+/// Condition: `key` names the entry, with or without words before a dot.
 fn is_called(key: &str, entry: &Entry) -> Value {
     let names = entry.names().collect::<Vec<_>>().join("|");
     json!({ "properties": { key: { "pattern": format!("^(.*\\.)?({names})$") } }, "required": [key] })
 }
 
-/// An item of a list of processes or modelers: a name, and the settings of what it names.
+/// An item of a list of processes or modelers: a name, and the settings of that object.
 fn item(key: &str, kind: &str, settings: &str) -> Value {
     let names = all_names(kind);
     let mut properties = json!({ settings: { "type": "object" } });

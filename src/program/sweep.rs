@@ -28,7 +28,7 @@ const ROW: &str = "row.json";
 /// Largest results that the table on the terminal shows.
 const LOOKED_AT: [&str; 3] = ["DISPLACEMENT", "CONTACT_PRESSURE", "TEMPERATURE"];
 
-/// The study: what is run, where.
+/// The study: its arguments, table and folder.
 struct Sweep<'a> {
     arguments: &'a RunArguments,
     table: Table,
@@ -52,7 +52,7 @@ struct Ended {
 /// Runs all rows; the exit code is the largest of theirs.
 ///
 /// # Errors
-/// A table that cannot be read, or folders that cannot be made; what a row ends with stands in its row of the results.
+/// A table that cannot be read, or folders that cannot be made; the outcome of a row stands in its row of the results.
 pub(super) fn run(arguments: &RunArguments, table: &Path, ranks: &Ranks) -> Result<ExitCode> {
     if ranks.size() > 1 {
         let problem = Diagnostic::error("sweep", "a sweep shares out whole runs, and was started on several ranks");
@@ -155,7 +155,7 @@ impl Sweep<'_> {
         (own == self.identity(row) && report.exit_code == 0 && as_it_was).then_some(report)
     }
 
-    /// Runs a row in a process of its own: what ends one does not end the others.
+    /// Runs a row in a process of its own: the end of one does not end the others.
     fn row(&self, row: usize) -> Result<Ended> {
         let RunArguments { file, like, resume, .. } = self.arguments;
         if *resume && let Some(report) = self.done_before(row) {
@@ -279,7 +279,7 @@ impl<'a> Column<'a> {
         Self { head: head.into(), cell: Box::new(cell) }
     }
 
-    /// Of what the report says; empty where a run has left none.
+    /// Column of a number in the report; empty where a run has left none.
     fn of_report(head: impl Into<String>, cell: impl Fn(&RunReport) -> String + 'a) -> Self {
         Self::new(head, move |ended| ended.report.as_ref().map(&cell).unwrap_or_default())
     }
@@ -310,7 +310,7 @@ impl Ended {
         balance.iter().flat_map(|balance| &balance.pairs).map(|pair| (pair.name.clone(), pair.force)).collect()
     }
 
-    /// That on the slave side of one pair.
+    /// Force on the slave side of one pair.
     fn force(&self, pair: &str) -> Option<[f64; 3]> {
         self.forces().into_iter().find(|(own, _)| own == pair).map(|(_, force)| force)
     }

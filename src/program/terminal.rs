@@ -64,8 +64,7 @@ impl Terminal {
         self.bar.iter().for_each(|bar| bar.set_message(self.progress.line(self.begun.elapsed())));
     }
 
-    /// The last lines: warnings once more, where results are, and how long it took; for a run that has `failed`, what the program
-    /// is going to say of it.
+    /// The last lines: warnings once more, where results are, and how long it took; for a run that has `failed`, the error.
     pub(super) fn finish(&mut self, report: &RunReport, failed: Option<&str>) {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();

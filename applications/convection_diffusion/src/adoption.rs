@@ -89,7 +89,7 @@ fn turn(table: &mut EntityTable, positions: &[[f64; 3]], space: usize) -> usize 
     count
 }
 
-/// Warns of materials that do not say how much heat is stored, and of what then `follows`.
+/// Warns of materials without heat storage, and of the consequence, `follows`.
 pub fn warn_of_no_storage(part: &ModelPart, follows: &str, report: &mut Report) {
     let columns = Columns::of(part);
     let mut ids = part.elements.properties.clone();

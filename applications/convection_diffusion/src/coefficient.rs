@@ -23,7 +23,7 @@ enum Own {
 /// A coefficient in one element.
 #[derive(Clone, Copy)]
 pub enum Local<'a, const NODES: usize> {
-    /// That of its material.
+    /// Coefficient of its material.
     Own(&'a Coefficient),
     /// Values at its nodes.
     Nodal([f64; NODES]),
@@ -89,7 +89,7 @@ impl Coefficient {
         Local::Nodal(std::array::from_fn(value))
     }
 
-    /// Its name, where neither the material nor a process says what it is in an element.
+    /// Its name, where neither the material nor a process gives its value in an element.
     pub fn unknown_in<const NODES: usize>(&self, local: &Local<'_, NODES>) -> Option<&'static str> {
         let is_zero = matches!(local, Local::Nodal(values) if values.iter().all(|value| *value == 0.0));
         self.column.filter(|_| self.is_missing() && (is_zero || matches!(local, Local::Own(_))))

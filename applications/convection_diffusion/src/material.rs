@@ -18,7 +18,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// That of a block.
+    /// Material of a block.
     pub fn of(request: &BlockRequest<'_>, columns: &Columns) -> Self {
         let properties = properties_of(request);
         let coefficient = |column, off| Coefficient::new(column, properties, columns.unknown.column, off);

@@ -12,7 +12,7 @@ use crate::variables::PROJECTED_SCALAR1;
 
 /// Name of the scheme.
 pub const SEMI_IMPLICIT: &str = "semi_implicit_convection_diffusion";
-/// Elements of what follows upon the transport.
+/// Elements of the step after advection.
 pub const DIFFUSION: &str = "EulerianDiffusion";
 
 struct CarriedThenConducted {

@@ -1,7 +1,7 @@
 //! Heat that follows a structure through the iterations of a step, so that both are found in one: `coupling_settings`, "monolithic".
 //!
-//! Heat is solved for after each iteration, and what temperatures would do to the next increment is part of its tangent
-//! ([`Follower`]). So the iteration of both converges as Newton's, also where the one drives the other strongly.
+//! Heat is solved for after each iteration, and the effect of temperatures on the next increment is part of its tangent ([`Follower`]).
+//! So the iteration of both converges as Newton's, also where the one drives the other strongly.
 
 use std::sync::{Arc, Mutex, PoisonError};
 

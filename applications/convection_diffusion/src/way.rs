@@ -8,7 +8,7 @@ use crate::sweeps::Goal;
 
 /// Name of the extension.
 pub const SETTINGS: &str = "coupling_settings";
-/// Values of the step data: what a deck has set.
+/// Names of step data: settings of the deck.
 const TOLERANCE: &str = "COUPLING_TOLERANCE";
 const MOST: &str = "COUPLING_MAX_ITERATION";
 const TOGETHER: &str = "COUPLING_TOGETHER";
@@ -27,7 +27,7 @@ pub(crate) enum Way {
 }
 
 impl Way {
-    /// That of a part.
+    /// Way of a part.
     pub(crate) fn of(part: &ModelPart) -> Self {
         let value = |name, usual| part.info.value_or(name, usual);
         let goal = Goal { tolerance: value(TOLERANCE, USUAL.tolerance), most: value(MOST, USUAL.most as f64) as usize };

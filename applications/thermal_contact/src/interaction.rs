@@ -44,7 +44,7 @@ pub struct Chosen {
     pub touching: f64,
     /// Whether bodies are of revolution, about the axis that heat has.
     pub axisymmetric: bool,
-    /// Heat by the work of friction: its share, and what brings it to the units of heat.
+    /// Heat of friction: its share times the factor from units of work to units of heat.
     pub friction: f64,
     /// Sliding across the motion of the model: the coefficient of friction, and the speed (length per time).
     pub across: Option<(f64, ScalarValue)>,

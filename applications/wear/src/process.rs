@@ -1,4 +1,4 @@
-//! `wear_process`: after each accepted step takes off what has worn.
+//! `wear_process`: removes the worn depth after each accepted step.
 
 use zelus_contact_structural_mechanics::FacingSurfaces;
 use zelus_contact_structural_mechanics::interface::Roles;
@@ -18,7 +18,7 @@ use crate::removal::{Side, Worn};
 use crate::rubbing::{Reading, Rubbed};
 use crate::variables::WEAR_DEPTH;
 
-/// The sides of an interface, in the order of what is kept of them.
+/// The sides of an interface, in the order of their records.
 const SIDES: [Roles; 2] = [Roles::Slave, Roles::Master];
 
 struct WearProcess {

@@ -70,7 +70,7 @@ pub(super) struct Model {
     /// Keywords that are not read, with their number.
     unread: BTreeMap<String, usize>,
     structural: BTreeMap<String, usize>,
-    /// Types whose elements come in as simpler ones: what is left out, and what to do.
+    /// Types whose elements come in as simpler ones: the missing feature, and the remedy.
     simpler: BTreeMap<String, (&'static str, &'static str)>,
     pub report: Report,
 }

@@ -6,7 +6,7 @@ use flate2::read::ZlibDecoder;
 
 use super::xml::{File, Tag};
 
-/// Most bytes of an array: what is damaged must not fill the memory.
+/// Most bytes of an array: damaged lengths must not fill the memory.
 const MOST: u64 = 1 << 34;
 
 /// The numbers of an array.

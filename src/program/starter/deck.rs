@@ -2,7 +2,7 @@
 
 use zelus_meshes::mesh::{LoadKind, Mesh, Pair, Plane, Support};
 
-/// `ProjectParameters.json` with a comment on what to decide.
+/// `ProjectParameters.json` with comments on the decisions to take.
 pub(super) fn text(mesh: &Mesh, stem: &str, space: usize, supports: &[Support]) -> String {
     let contact: Vec<&Pair> = mesh.pairs.iter().filter(|pair| !pair.tied).collect();
     let tied: Vec<&Pair> = mesh.pairs.iter().filter(|pair| pair.tied).collect();
@@ -146,7 +146,7 @@ fn loads(mesh: &Mesh, space: usize) -> Vec<String> {
     .collect()
 }
 
-/// `{"0": ["Part"], "1": […]}` of what `name` gives of each pair.
+/// `{"0": ["Part"], "1": […]}` with `name` of each pair.
 fn by_pair(pairs: &[&Pair], name: impl Fn(&Pair) -> String) -> String {
     let items: Vec<String> = pairs.iter().enumerate().map(|(at, pair)| format!("\"{at}\": {}", name(pair))).collect();
     format!("{{{}}}", items.join(", "))

@@ -14,7 +14,7 @@ use crate::method::{ConstraintState, Gradient, Method};
 pub(super) enum InitialActiveSet {
     /// None.
     Empty,
-    /// Those that the strategy picks.
+    /// Constraints that the strategy picks.
     Checked,
 }
 

@@ -33,7 +33,7 @@ struct EliminationInteraction {
     springs: System,
 }
 
-/// −f′ at a node: what the elements exert on its position; collective.
+/// −f′ at a node: the force of the elements on its position; collective.
 fn force(springs: &System, part: &ModelPart, node: u32) -> Result<f64> {
     let own = part.ranks.agree(own_force(springs, &part.view(), node))?;
     Ok(if part.share.is_some() { part.ranks.total(own) } else { own })

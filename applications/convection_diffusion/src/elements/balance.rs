@@ -1,4 +1,4 @@
-//! The balance of heat at a point: what the shape functions and their gradients are multiplied by.
+//! The balance of heat at a point: the factors of the shape functions and of their gradients.
 //!
 //! ρc (∂T/∂t + v·∇T) = ∇·(k ∇T) + Q is weighted by N_i + τ v·∇N_i (SUPG): the residual is −∫ (N_i a + ∇N_i·b) with
 //! a = ρc (T − T₀)/Δt + ρc v·(θ ∇T + (1 − θ) ∇T₀) − Q and b = k (θ ∇T + (1 − θ) ∇T₀) + τ v a, where

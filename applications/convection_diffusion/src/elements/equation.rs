@@ -19,7 +19,7 @@ use crate::coefficient::Local;
 use crate::columns::{Columns, nodal, velocities};
 use crate::material::Material;
 
-/// Which terms of the balance a kind of element has.
+/// Terms of the balance that a kind of element has.
 pub trait Terms: Send + Sync + 'static {
     /// Storage and convection.
     const TRANSIENT: bool;

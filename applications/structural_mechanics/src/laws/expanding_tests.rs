@@ -100,7 +100,7 @@ fn what_is_free_expands_without_stress() {
     check_free::<3>(PLANE_STRESS);
 }
 
-/// At the reference temperature it is the law itself, also in what it remembers.
+/// At the reference temperature it is the law itself, also in its history.
 fn check_reference<const S: usize>(name: &str)
 where
     LawFactory: MakesLaw<S>,
@@ -174,7 +174,7 @@ fn plane_strain_is_held_across() {
     }
 }
 
-/// The tangent is the slope of the stress, and the stress of what does not flow that of the energy.
+/// The tangent is the slope of the stress, and without plastic flow the stress is the slope of the energy.
 fn check_tangent<const S: usize>(name: &str)
 where
     LawFactory: MakesLaw<S>,

@@ -55,7 +55,7 @@ impl<'a, const S: usize> StrainState<'a, S> {
     }
 }
 
-/// Which stress an element integrates.
+/// Stress measure that an element integrates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StressMeasure {
     /// Second Piola–Kirchhoff stress, on the initial configuration.
@@ -87,7 +87,7 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
         false
     }
 
-    /// Whether strength falls, so that what breaks is a band as wide as an element.
+    /// Whether strength falls, so that a band as wide as an element breaks.
     fn softens(&self) -> bool {
         false
     }
@@ -102,7 +102,7 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
         None
     }
 
-    /// Volume that what is free has at a temperature, over its initial one.
+    /// Volume of an unconstrained specimen at a temperature, over its initial one.
     fn free_volume(&self, _temperature: f64) -> f64 {
         1.0
     }
@@ -150,7 +150,7 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
 /// A function that makes a law with `S` Voigt components from the properties.
 pub type MakeLaw<const S: usize> = fn(&Properties) -> Result<Box<dyn ConstitutiveLaw<S>>>;
 
-/// For which elements a law is, with what makes it.
+/// Elements that a law is for, with its factory.
 #[derive(Clone, Copy)]
 pub enum LawFactory {
     /// For elements in space.
@@ -177,7 +177,7 @@ registered_kind! {
     }
 }
 
-/// That laws are made for `S` Voigt components.
+/// Laws for `S` Voigt components.
 pub trait MakesLaw<const S: usize> {
     /// Function that makes the law for them, `plane` as in [`law_of`]; `None` where it is for other elements.
     fn make(self, plane: bool) -> Option<MakeLaw<S>>;

@@ -25,7 +25,7 @@ pub(super) struct Point<'a, const NODES: usize, const DIM: usize, const S: usize
     pub(super) excess: [[f64; DIM]; NODES],
     /// Volume on the formulation's configuration that the point stands for.
     pub(super) weight: f64,
-    /// Strain, deformation gradient and what the law remembers.
+    /// Strain, deformation gradient and history of the law.
     pub(super) state: StrainState<'a, S>,
 }
 
