@@ -63,13 +63,13 @@ enum Command {
     Check {
         /// The deck, e.g. ProjectParameters.json.
         file: PathBuf,
-        /// Take the defaults of this program where the deck names nothing, e.g. kratos.
+        /// Use the defaults of this program where the deck gives none, e.g. kratos.
         #[arg(long, value_name = "PROGRAM")]
         like: Option<String>,
         /// Take a value in place of the deck's, e.g. solver_settings.max_iteration=20; may be given several times.
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
-        /// How problems are told: text, or one JSON object with severity, code, place, fact and remedy of each.
+        /// Format of problems: text, or one JSON object with severity, code, place, fact and remedy of each.
         #[arg(long, value_enum, default_value_t = Format::Text)]
         format: Format,
     },
