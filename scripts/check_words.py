@@ -5,7 +5,7 @@ Usage: scripts/check_words.py [--self-test] [--list KIND]
 
 Kinds of findings, each printed as "file:line: fact; remedy":
 
-  banned    a phrase of the list in scripts/words.txt: in documents, comments and string literals of Rust, comments of configs
+  banned    a phrase of the list in scripts/words.txt: in documents, comments, docstrings, string literals of Rust
   opening   a sentence of a comment or a document that opens with What, Whose, Of which or That which
   length    a sentence of a document with more words than scripts/words.txt allows
   link      a link between documents, or to a heading, that leads nowhere
@@ -18,11 +18,13 @@ Quotations (text between “ ” or backticks, code blocks, block quotes) are le
 
 import argparse
 import bisect
+import io
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import tokenize
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -257,6 +259,34 @@ def rust_passages(path, text):
     return passages
 
 
+def python_passages(path, text):
+    """Comments and docstrings of Python; strings that stand alone are docstrings."""
+    passages, before, alone = [], None, True
+    try:
+        tokens = list(tokenize.generate_tokens(io.StringIO(text).readline))
+    except (tokenize.TokenError, SyntaxError):
+        return passages
+    for token in tokens:
+        if token.type == tokenize.COMMENT:
+            if before is None or token.start[0] != before.lines[-1] + 1 or token.line[:token.start[1]].strip():
+                before = Passage(path, "comment")
+                passages.append(before)
+            before.add(token.start[0], token.string.lstrip("#!"))
+        elif token.type == tokenize.STRING and alone:
+            paragraph = None
+            for extra, line in enumerate(token.string.strip("rRbBuUfF").strip("\"'").splitlines()):
+                if not line.strip():
+                    paragraph = None
+                    continue
+                if paragraph is None:
+                    paragraph = Passage(path, "comment")
+                    passages.append(paragraph)
+                paragraph.add(token.start[0] + extra, line)
+        if token.type not in (tokenize.COMMENT, tokenize.NL):
+            alone = token.type in (tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENCODING)
+    return passages
+
+
 JSON_TOKENS = re.compile(r"""(?P<string>"(?:\\.|[^"\\\n])*")|(?P<comment>//[^\n]*)""")
 
 
@@ -452,6 +482,9 @@ def check_spelling(passages_of, accepted):
 
 # ---------------------------------------------------------------------------------------------------------------------------------
 
+READERS = {".rs": rust_passages, ".py": python_passages, ".json": json_passages}
+
+
 def files(root, ending):
     found, pending = [], [root]
     while pending:
@@ -466,10 +499,10 @@ def files(root, ending):
 
 def findings(root, rules, rules_path, index="docs/user-guide.md"):
     documents = {path: (root / path).read_text(encoding="utf-8") for path in files(root, ".md")}
-    sources = files(root, ".rs") + [path for path in files(root, ".json") if path.startswith("configs/")]
+    sources = files(root, ".rs") + files(root, ".py") + [path for path in files(root, ".json") if path.startswith("configs/")]
     passages_of = {path: document_passages(path, text) for path, text in documents.items()}
     for path in sources:
-        read = rust_passages if path.endswith(".rs") else json_passages
+        read = READERS[Path(path).suffix]
         passages_of[path] = read(path, (root / path).read_text(encoding="utf-8"))
     every = []
     for path, passages in passages_of.items():
@@ -520,6 +553,11 @@ See [a page](gone.md), [a heading](#gone), [this one](#what-a-heading-may-say) a
     "other": 1 // Bodies by turns
 }
 """,
+    "tool.py": """'''What a module is.
+
+By turns it is another.'''
+WORDS = "What a string says"  # Whose comment this is
+""",
     "src/lib.rs": """//! A crate.
 
 /// What an item is, `by turns`.
@@ -544,6 +582,9 @@ EXPECTED = {
     ("index", "docs/index.md", 1),
     ("opening", "configs/object.json", 2),
     ("banned", "configs/object.json", 5),
+    ("opening", "tool.py", 1),
+    ("banned", "tool.py", 3),
+    ("opening", "tool.py", 4),
     ("opening", "src/lib.rs", 3),
     ("banned", "src/lib.rs", 4),
     ("opening", "src/lib.rs", 5),
