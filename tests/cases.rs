@@ -46,7 +46,7 @@ enum Value {
 }
 
 impl Check {
-    /// The largest difference found and where, or what is missing.
+    /// The largest difference found and where, or the missing item.
     fn worst(&self, folder: &Path, nodes: &BTreeMap<u64, [f64; 3]>) -> Result<(f64, String), String> {
         let results = Results::read(&folder.join(&self.results))?;
         let step = results.step(self.time)?;

@@ -31,7 +31,7 @@ pub fn give_back() {
         unsafe extern "C" {
             fn malloc_trim(pad: usize) -> i32;
         }
-        // SAFETY: it takes no pointer, and touches only what is free.
+        // SAFETY: it takes no pointer, and touches only free memory.
         unsafe { malloc_trim(0) };
     }
 }

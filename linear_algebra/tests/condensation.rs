@@ -1,4 +1,4 @@
-//! Condensed systems against whole ones, and what cannot be condensed.
+//! Condensed systems against whole ones, and systems that cannot be condensed.
 
 mod samples;
 
@@ -57,9 +57,9 @@ impl Random {
     }
 }
 
-/// Two boxes of `n³` cells, the upper one held by the multipliers `kind` of its lowest nodes; `scale` is that of the
-/// multipliers, `off` what they do to the next slave node, relative to their own. The equations `without` of the slave
-/// nodes (node, direction) are left out.
+/// Two boxes of `n³` cells, the upper one held by the multipliers `kind` of its lowest nodes; `scale` is that of the multipliers, `off`
+/// their coefficient at the next slave node, relative to their own. The equations `without` of the slave nodes (node, direction) are
+/// left out.
 fn pressed(
     n: usize,
     kind: impl Fn(usize) -> Kind,
@@ -100,7 +100,7 @@ fn pressed(
         for c in 0..3 {
             for e in 0..3 {
                 let across = f64::from(u8::from(c == e)) - normal[c] * normal[e];
-                // Rows of the conditions, with what the motion of the operators adds.
+                // Rows of the conditions, with the terms of the motion of the operators.
                 let direction = match kind {
                     Kind::Stick => f64::from(u8::from(c == e)),
                     _ => normal[c] * normal[e],

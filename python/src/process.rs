@@ -62,7 +62,7 @@ impl Process for PythonProcess {
     }
 
     fn is_output_step(&mut self, model: &Model) -> bool {
-        // what fails here fails again in the next call
+        // an error here occurs again in the next call
         matches!(self.line.ask_of(Event::Call(self.number, "IsOutputStep"), model), Ok(Answer::Truth(true)))
     }
 

@@ -17,7 +17,7 @@ struct Run {
 }
 
 impl Run {
-    /// A case with another formulation, all defaults of its process but for what the problem itself says.
+    /// A case with another formulation, all defaults of its process but for settings of the problem itself.
     fn of(case: &str, process: &str, formulation: &str) -> Self {
         let scratch = scratch_copy(&root().join("tests/cases").join(case));
         let file = scratch.path().join(DECK);

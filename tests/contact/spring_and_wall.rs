@@ -84,7 +84,7 @@ fn problems_of(expected: &Expected, folder: &Path) -> Vec<String> {
     for (at, (found, wanted)) in written.iterates.iter().zip(&expected.iterates).enumerate() {
         let pairs = found.values.iter().zip(&wanted.values).chain([(&found.residual_norm, &wanted.residual_norm)]);
         for (found, wanted) in pairs {
-            // A comparison that is false for what is not a number.
+            // A comparison that is false for a value that is not a number.
             let close = (found - wanted).abs() <= 1e-9 * wanted.abs() + expected.round_off;
             if !close {
                 problems.push(format!("iterate {at}: {found:e}, expected {wanted:e}"));

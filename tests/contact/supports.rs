@@ -12,7 +12,7 @@ use zelus as _;
 
 const NULL: Value = Value::Null;
 
-/// Runs a deck and gives what it said and the displacement of every node.
+/// Runs a deck; returns the output and the displacement of every node.
 fn run(deck: &Deck, folder: &Path, change: impl FnOnce(&mut Value)) -> Result<(String, Vec<Vec3>), String> {
     deck.write(folder, change);
     let output = zelus(folder, &["run", "ProjectParameters.json", "--threads", "1"]);

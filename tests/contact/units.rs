@@ -28,7 +28,7 @@ const TOLERANCE_AT_THE_AXIS: f64 = 5e-9;
 /// The same where surfaces slide in space: the decks' tolerance of slip, 1e-9, leaves 1e-8 in the multipliers.
 const TOLERANCE_OF_SLIDING: f64 = 3e-8;
 
-/// Quantities by whose largest value is measured what is compared, and that.
+/// The reference quantity, by its largest value, and the column that is compared.
 const COMPARED: [(&str, &str); 7] = [
     ("DISPLACEMENT", "DISPLACEMENT_X"),
     ("DISPLACEMENT", "DISPLACEMENT_Y"),

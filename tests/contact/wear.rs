@@ -180,7 +180,7 @@ impl Worn {
     }
 }
 
-/// The depth of a block under a constant pressure is k p s, and so is what its shape has lost.
+/// The depth of a block under a constant pressure is k p s, and so is the change of its shape.
 #[test]
 fn a_sliding_block_wears_by_pressure_and_way() {
     let space = Sliding { space: 3, cells: [3, 2, 2], ..PLANE };

@@ -224,7 +224,7 @@ fn reactions_of_supports_that_constraints_reach() {
     equals_serial("mpc/pressed_and_opened_hexahedra", &friction, EQUAL, true);
 }
 
-/// A corner that lands between the nodes of a coarse slave makes energy: what the work of contact says, on any number of ranks.
+/// A corner that lands between the nodes of a coarse slave makes energy: the work of contact shows it, on any number of ranks.
 #[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn work_of_contact_is_counted_once() {

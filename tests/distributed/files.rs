@@ -108,7 +108,7 @@ fn ranks_write_a_piece_of_the_picture_each() {
     }
 }
 
-/// Put before the JSON output of a deck: what rank 0 writes of the values of all.
+/// Put before the JSON output of a deck: rank 0 writes the values of all.
 const FILES: &str = r#""files": [
     {"python_module": "integration_values_extrapolation_to_nodes_process", "kratos_module": "KratosMultiphysics",
         "Parameters": {"model_part_name": "Structure", "list_of_variables": ["VON_MISES_STRESS"]}},

@@ -1,7 +1,7 @@
 //! Everyday problems of contact, each without friction and with, run with default settings as a first attempt would.
 //!
-//! Every accepted step must be in balance and fulfil the conditions of contact and friction, and integrate all of what faces
-//! the master; besides, each problem has a number that theory or symmetry gives.
+//! Every accepted step must be in balance and fulfil the conditions of contact and friction, and integrate all facets opposite the
+//! master; besides, each problem has a number that theory or symmetry gives.
 //!
 //! `ZELUS_EVERYDAY=FOLDER` in the environment keeps the decks there.
 

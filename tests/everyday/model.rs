@@ -69,7 +69,7 @@ pub struct Look {
 pub const PLAIN: Look = Look { turn: 0.0, about: [0.0, 0.0, 1.0], size: 1.0, backwards: false, penalty: false };
 
 impl Look {
-    /// Rows of the rotation (Rodrigues); what is next to nothing is nothing.
+    /// Rows of the rotation (Rodrigues); round-off of zero is set to zero.
     fn rows(&self) -> [Vec3; 3] {
         let ([x, y, z], (s, c)) = (self.about, self.turn.sin_cos());
         let cross = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];

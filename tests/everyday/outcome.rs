@@ -7,7 +7,7 @@ use crate::grid::Vec3;
 use crate::model::Model;
 use crate::support::{Results, read_json};
 
-/// Largest error of balance, as a share of the largest reaction: what the default tolerance of residuals leaves.
+/// Largest error of balance, as a share of the largest reaction: that of the default tolerance of residuals.
 const BALANCE: f64 = 2e-3;
 /// Forces that count in every state, as a share of the largest of the run.
 const LEAST_FORCE: f64 = 1e-2;

@@ -83,7 +83,7 @@ impl Bars {
             "end_time": 1e12}, "solver_settings": self.solver(), "processes": {"list": self.processes(laws)}})
     }
 
-    /// Heat that supports feed and take up, with what the report says passes from slaves to masters.
+    /// Heat that supports feed and take up, with the heat from slaves to masters of the report.
     fn run(&self, laws: &Value) -> ([f64; 2], f64) {
         let scratch = tempfile::tempdir().expect("a scratch folder");
         self.write(scratch.path(), &self.deck(laws));
@@ -423,8 +423,8 @@ fn friction_heats_both_bodies() {
     }
 }
 
-/// Barber's rod at rest, in one step: what warms the rod closes its gap, and what passes there cools it again. Staggered coupling of
-/// heat and structure oscillates between contact and none; monolithic coupling finds the state at once (the numbers of
+/// Steady state of Barber's rod, in one step: a warm rod closes its gap, and conduction in contact cools it again. Staggered coupling
+/// of heat and structure oscillates between contact and none; monolithic coupling finds the state at once (the numbers of
 /// `examples/barber_rod`).
 #[test]
 fn barbers_rod_comes_to_rest_in_one_step() {

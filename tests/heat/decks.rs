@@ -27,7 +27,7 @@ fn folder() -> Option<PathBuf> {
     there.then_some(folder)
 }
 
-/// The counted decks that do not pass, and what was said.
+/// The counted decks that do not pass, and the output.
 fn failed(folder: &Path, like: &str) -> (Vec<String>, String) {
     let scratch = tempfile::tempdir().expect("a scratch folder");
     let scores = scratch.path().join("scores.json");

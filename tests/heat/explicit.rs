@@ -1,4 +1,4 @@
-//! Explicit steps of heat: their method, what they carry, what they store, and how long they may be.
+//! Explicit steps of heat: their method, convection, storage and critical length.
 
 use serde_json::{Value, json};
 

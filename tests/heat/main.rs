@@ -161,7 +161,7 @@ fn paths_carry_a_slope_unchanged() {
         for column in 0..=20 {
             let x = column as f64 / 20.0;
             let found = last(&results, &slab, column);
-            // Paths of nodes at the left begin outside of the slab, and the next steps pass on what they miss.
+            // Paths of nodes at the left begin outside of the slab, and the next steps pass on the error.
             assert!(x < 0.5 || (found - 2.0 * (x - 0.12)).abs() < 1e-12, "{x}: {found}");
         }
     }
@@ -375,7 +375,7 @@ fn heat_that_enters_leaves_or_is_stored() {
     }
 }
 
-/// Heat at rest is what it is, however long a step is; stored heat, as in Kratos, comes to rest after long ones alone.
+/// The steady state does not depend on the length of a step; stored heat, as in Kratos, becomes steady after long ones alone.
 #[test]
 fn heat_at_rest_knows_no_time() {
     let slab = Slab { height: 0.1, ..Slab::new(5) };

@@ -1,5 +1,5 @@
-//! Mistakes that a run could pass over: what a deck asks for and nothing does, states that no contact can be in, bodies that nothing
-//! holds. Each is told with its place, fact and remedy, and good decks hear none of it.
+//! Mistakes that a run could pass over: settings without effect, impossible states of contact, unrestrained bodies. Each is told with
+//! its place, fact and remedy, and good decks hear none of it.
 
 #[path = "../support/blocks_of_case.rs"]
 mod blocks_of_case;
@@ -48,7 +48,7 @@ fn go(command: &str, folder: &Path) -> (Option<i32>, String) {
     (output.status.code(), said(&output))
 }
 
-/// The warnings and errors of a run with what to do about them, where folders are no part of them.
+/// The warnings and errors of a run with their remedies, where folders are no part of them.
 fn messages(said: &str) -> String {
     let mut out = String::new();
     let mut remedy = false;

@@ -1,4 +1,4 @@
-//! The commands of the book run, and do what its pages say.
+//! The commands of the book run, and do as its pages say.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

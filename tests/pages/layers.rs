@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Crates whose `lib.rs` lists its modules from what is used to what uses.
+/// Crates whose `lib.rs` lists its modules so that each uses only those above it.
 const CRATES: [&str; 8] = [
     "core/src",
     "linear_algebra/src",
@@ -51,8 +51,8 @@ const PHYSICS: [&str; 25] = [
 /// Types of a global that changes.
 const CHANGEABLE: [&str; 6] = ["Mutex", "RwLock", "Cell<", "Lock<", "Atomic", "static mut"];
 
-/// Globals that hold no state of a run: what is read or computed once and never changes, the lock of a library that
-/// takes one caller at a time, and how deep a reader of states within states is on its thread.
+/// Globals that hold no state of a run: constants that are read or computed once, the lock of a library that takes one caller at a
+/// time, and how deep a reader of states within states is on its thread.
 const CONSTANT: [&str; 10] =
     ["DEPTH", "VARIABLES", "FLAGS", "RATES", "RANGES", "CSV_DEFAULTS", "TABLES", "CODES", "METIS", "NAMES"];
 

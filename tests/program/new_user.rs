@@ -1,5 +1,4 @@
-//! A new user's pin in a lug, pressed with friction in space, with one mistake after the other: what the program says leads to the
-//! right deck.
+//! A new user's pin in a lug, pressed with friction in space, with one mistake after the other: the messages lead to the right deck.
 
 use std::f64::consts::PI;
 use std::path::Path;

@@ -26,7 +26,7 @@ fn deck(folder: &str, steps: usize, change: impl Fn(&mut Value)) -> TempDir {
     scratch
 }
 
-/// Files of results by name: not the saved runs, which hold times of the clock, nor what was left half written.
+/// Files of results by name: not the saved runs, which hold times of the clock, nor incomplete files.
 fn results(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let is_result = |name: &Path| {
         let text = name.to_string_lossy();

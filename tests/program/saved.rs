@@ -16,7 +16,7 @@ const DECK: &str = "ProjectParameters.json";
 /// Settings of the structure beside heat.
 const STRUCTURE: &str = "structural_solver_settings";
 
-/// A folder beside or below `tests`, what is changed in its deck, and how many steps it makes.
+/// A folder beside or below `tests`, the change of its deck, and how many steps it makes.
 struct Case {
     folder: &'static str,
     change: fn(&mut Value),
@@ -53,7 +53,7 @@ fn state(part: &ModelPart) -> Vec<(String, Vec<u64>)> {
     out
 }
 
-/// The report without what a clock and a machine make of it.
+/// The report without numbers that depend on clock and machine.
 fn report(simulation: &Simulation) -> Value {
     let mut report = serde_json::to_value(simulation.report()).expect("a report");
     for key in ["seconds", "threads", "memory"] {
@@ -360,7 +360,7 @@ fn joined(of_ranks: Vec<Numbers>) -> Numbers {
     all
 }
 
-/// The largest difference of two runs over the largest number, by name; of what both have.
+/// The largest difference of two runs over the largest number, by name; of quantities that both have.
 fn differences(a: &Numbers, b: &Numbers) -> Vec<(String, f64)> {
     let difference = |(name, values): (&String, &BTreeMap<usize, Vec<f64>>)| {
         let other = &b[name];

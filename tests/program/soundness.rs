@@ -266,7 +266,7 @@ fn ranks_together_say_what_holds_a_body() {
     }
 }
 
-/// Hears what holds bodies.
+/// Collects the notes on restraint of bodies.
 #[derive(Default)]
 struct Held(Vec<String>);
 

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 const DECK: &str = "ProjectParameters.json";
 
-/// The deck as two stages, the second on what the first leaves.
+/// The deck as two stages, the second on the state of the first.
 fn in_two_stages(deck: &Value) -> Value {
     let stage = |number: i32| {
         let mut settings = deck.clone();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 const DECK: &str = "ProjectParameters.json";
 
-/// Runs a changed deck: exit code, what it said, accepted times, number of attempts, result files.
+/// Runs a changed deck: exit code, output, accepted times, number of attempts, result files.
 struct Run {
     code: Option<i32>,
     text: String,
@@ -58,7 +58,7 @@ fn assert_same_bits(cut: &Run, given: &Run) {
     }
 }
 
-/// A deck that gives the lengths found by cutting ends in the same bits: what failed attempts changed is put back.
+/// A deck that gives the lengths found by cutting ends with the same bits: changes by failed attempts are put back.
 #[test]
 fn the_state_before_a_failed_attempt_comes_back_to_the_bit() {
     let folder = root().join("tests/decks/oscillator");

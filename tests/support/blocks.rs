@@ -10,7 +10,7 @@ use zelus_core::geometry::{Shape, shape_functions};
 /// A point or a displacement.
 pub type Vec3 = [f64; 3];
 
-/// A mesh of quadrilaterals or hexahedra, or of what they are cut into, with its parts.
+/// A mesh of quadrilaterals or hexahedra, or of the simplices they are cut into, with its parts.
 #[derive(Default)]
 pub struct Mesh {
     /// Places of the nodes; node n is number n + 1.

@@ -1,4 +1,4 @@
-//! Boxes of equal elements that move and touch: their mesh, their deck and what their motion holds.
+//! Boxes of equal elements that move and touch: their mesh, their deck and the invariants of their motion.
 #![allow(dead_code, reason = "each test binary uses its part")]
 
 use std::collections::BTreeMap;

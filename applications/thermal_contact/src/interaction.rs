@@ -81,7 +81,7 @@ impl ThermalContact {
                 slave.nodes.iter().zip(&found.slave).map(|(&node, n)| n * of(node as usize)).sum()
             };
             let (touches, pressure, gap) = if is_computed {
-                // Contact is what contact has decided: nodes in contact may still be apart while it iterates.
+                // Contact decides: nodes in contact may still be apart while it iterates.
                 let touches = sum(&|node| f64::from(u8::from(status[node] > 0.0))) > 0.0;
                 (touches, sum(&|node| pressures[node]), if touches { sum(&|node| gaps[node]) } else { found.gap })
             } else {

@@ -41,7 +41,7 @@ struct Bodies<'a> {
     motions: Vec<Motion>,
 }
 
-/// Reports before the run, in statics, what restrains bodies that supports leave free; collective.
+/// Reports before the run, in statics, the restraint of bodies that supports leave free; collective.
 pub(super) fn tell_what_holds(part: &ModelPart, system: &System, prescribed: &[Prescription], problems: &mut Report) {
     let Some(column) = Rates::moving(&part.nodes.history) else { return };
     let Some(joins): Option<Vec<Vec<Join>>> = system.interactions.iter().map(|own| own.joins(part)).collect() else {

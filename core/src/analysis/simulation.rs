@@ -325,7 +325,7 @@ impl Simulation {
     fn load_run(&mut self, path: &Path, monitor: &mut dyn Monitor) -> Result<()> {
         let ranks = self.model.ranks.clone();
         let file = ranks.agree(SavedFile::open(path))?;
-        // Each rank takes up what it had; on another number of them, its share of what all had.
+        // Each rank restores its own state; on another number of ranks, its share of all states.
         let same = file.ranks() == ranks.size();
         let wanted = if same { ranks.rank()..ranks.rank() + 1 } else { 0..file.ranks() };
         let runs: Vec<LoadedRun> = ranks.agree(wanted.map(|rank| file.read(rank)).collect())?;

@@ -98,7 +98,7 @@ pub(super) fn warn_of_contradictions(
     for time in times {
         let all = prescriptions(part, processes, time);
         let mut known: FxHashMap<(ScalarVariable, u32), (usize, f64)> = FxHashMap::default();
-        // First node, its two values and the number of nodes, by what contradicts what.
+        // First node, its two values and the number of nodes, by the two contradicting processes.
         let mut found: Vec<([usize; 2], u32, [f64; 2], usize)> = Vec::new();
         for (at, own) in all.iter().enumerate() {
             for &(node, value) in &own.values {

@@ -237,7 +237,7 @@ fn sums(
     let variables: Vec<ScalarVariable> = system.dofs.variables().filter(with_reactions).collect();
     let mut columns: Vec<&'static str> = variables.iter().map(|variable| variable.column).collect();
     columns.dedup();
-    // Forces and moments of each kind, and of what is left over.
+    // Forces and moments of each kind, and of the remainder.
     let mut all = vec![[[[0.0; 3]; 2]; KINDS + 1]; columns.len()];
     // Input and output by loads and supports, and the moments of both as absolute values: supports that push against each other alone
     // add up to nothing, beside which all is large.

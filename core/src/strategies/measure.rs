@@ -100,7 +100,7 @@ impl Measure {
                 let switched = measures.switched.map(norms);
                 let check = |(kind, norm): (usize, &Norm)| {
                     let of_start = starts.iter().map(|start| start[kind].size).fold(0.0, f64::max);
-                    // Equations that nothing acted in at the start refer to what the last change of state left of them.
+                    // Equations without action at the start refer to their residual after the last change of state.
                     let of_switch = switched.as_ref().map_or(0.0, |left| left[kind].size);
                     let reference = [of_start, of_switch, norm.size].into_iter().find(|size| *size > 0.0);
                     self.of_variable(*norm, reference.unwrap_or(0.0), || is_balanced(kind))

@@ -302,7 +302,7 @@ impl NewtonRaphson {
         let known = solved.as_ref().map_or([0.0; 2], |(_, report)| [report.seconds_symbolic, report.seconds_numeric]);
         self.phases.add("linear: order", known[0]);
         self.phases.add("linear: factor", known[1]);
-        // With what engines spent that gave no answer.
+        // With the time of engines that gave no solution.
         let known = known[0] + known[1] + self.assembler.seconds.bulk - assembling;
         self.phases.add("linear: solve", start.elapsed().as_secs_f64() - known);
         let (increment, report) = solved.map_err(|failed| failed.in_part(part))?;

@@ -155,7 +155,7 @@ impl OwnedRows {
             symmetry: if has_coupling { Symmetry::General } else { system.bulk_symmetry },
             has_multipliers: left.is_none() && system.layout.multiplier.contains(&true),
             modes: Some(modes.as_ref().unwrap_or(&self.modes)),
-            // The pattern of a condensed system changes with what is active.
+            // The pattern of a condensed system changes with the active set.
             graph: if left.is_some() { u64::MAX - self.stamp } else { self.graph },
             stamp: self.stamp,
         };

@@ -85,7 +85,7 @@ impl Answers {
         if self.graph != graph || self.latest.iter().any(|kept| kept.x.len() != x.len()) {
             return copied(b);
         }
-        // Orthonormal products; their answers, with what each had of those before it and the part of b along it.
+        // Orthonormal products; their solutions, with the coefficients of those before and the part of b along it.
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let mut found: Vec<(&[f64], Vec<f64>, f64)> = Vec::new();
         let mut rest = copied(b);

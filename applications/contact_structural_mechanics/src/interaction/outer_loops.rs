@@ -128,7 +128,7 @@ impl OuterLoops {
         {
             return Ok(Outer::Failed(why));
         }
-        // Of bodies in motion the energy that contact makes tells what is too much.
+        // For bodies in motion the energy error of contact decides instead.
         if !contact.setup.parameters.dynamic
             && solver.largest_penetration > 0.0
             && let Some(why) = pierced(part, &contact.pairing, &contact.states)

@@ -83,7 +83,7 @@ pub fn candidates(part: &ModelPart, interface: &Interface, settings: &SearchSett
     let of_role = |role: Roles| -> Vec<u32> {
         (0..interface.facets.len() as u32).filter(|&f| interface.facets[f as usize].role == role).collect()
     };
-    // Moved bodies and nodes that touch are judged by what is near, not by what overlaps now.
+    // Moved bodies and nodes that touch are judged by near facets, not by overlapping ones.
     let overlapping = !settings.dynamic && settings.check != GapCheck::DirectCheck;
     among(part, interface, &of_role(Roles::Slave), &of_role(Roles::Master), settings, overlapping)
 }

@@ -46,7 +46,7 @@ pub(crate) fn calibrate(
     if settings.weighted_penalty && settings.manual.is_none() {
         messages.extend(unit.warning());
     }
-    // Without factors, which a deck may have chosen for what else they do.
+    // Without factors, which a deck may have chosen for their other effects.
     let of_bodies = alm_parameters(part, interfaces, 1.0, 1.0).penalty;
     let of_bodies = if of_bodies > 0.0 { of_bodies } else { chosen.penalty };
     // Kratos finds no scale factor where no side is named, and falls back to 1; multipliers would differ otherwise.

@@ -34,7 +34,7 @@ fn unfold(deck: &mut Node) -> Result<()> {
     let Some(Node { value: Value::Object(members), .. }) = top.get_mut("solver_settings") else { return Ok(()) };
     let coupling = members.remove(way::SETTINGS);
     let (Some(mut own), Some(of_heat)) = (members.remove(STRUCTURE), members.remove(EXTENSION)) else { return Ok(()) };
-    // Other programs have defaults for it, which are laid under what is there.
+    // Other programs have defaults for it, which apply below the present settings.
     let mut nothing = of_heat.node.clone();
     nothing.value = Value::Object(Object::default());
     own.node.set_path(way::SETTINGS, coupling.map_or(nothing, |coupling| coupling.node))?;

@@ -104,7 +104,7 @@ impl VolumetricForm for MixedTotalLagrangian {
         let wanted = if lhs.is_empty() { None } else { Some(&mut d) };
         let s = stress_tensor(&matter.law.stress(state, StressMeasure::Pk2, wanted));
         let excess = theta - j + 1.0;
-        // S ∇N_i, and what is out of balance but for the body force: κ Σ θ_i h_i
+        // S ∇N_i, and the out-of-balance force without the body force: κ Σ θ_i h_i
         let pulled =
             at.dn.map(|dn| -> [f64; DIM] { std::array::from_fn(|a| (0..DIM).map(|b| s[(a, b)] * dn[b]).sum()) });
         let mut load = matter.body;

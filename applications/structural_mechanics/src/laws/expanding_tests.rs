@@ -189,7 +189,7 @@ where
             law.advance(&state::<S>(gradient::<S>(&mut random, 0.03), small, t, &before), &mut history);
         }
         let at = state::<S>(gradient::<S>(&mut random, 0.03), small, t, &history);
-        // Small strain is what laws of small strain take; those of finite strain read Green and Lagrange's.
+        // Laws of small strain take small strain; those of finite strain read that of Green and Lagrange.
         if small && !name.contains("SmallStrain") && !name.contains("Kirchhoff") {
             continue;
         }

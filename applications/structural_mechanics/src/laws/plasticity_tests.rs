@@ -184,7 +184,7 @@ fn finite_strain_does_not_see_rotations() {
     assert!((0..6).all(|v| near(other[v], expected[v], 1e-12 * E)), "{other:?} {expected:?}");
     let pushed = push_forward(&a, &turn, 1.0);
     assert!((0..6).all(|v| (0..6).all(|w| near(b[v][w], pushed[v][w], 1e-11 * E))));
-    // a rotation before the first step turns what is remembered with it
+    // a rotation before the first step rotates the history with it
     let earlier = first * turn;
     let before = advanced(law.as_ref(), green(&earlier), &[0.0; 7]);
     let carried = congruent(&turn.transpose(), &remembered(&history).0);

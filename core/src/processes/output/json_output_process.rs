@@ -311,7 +311,7 @@ impl<W: Write> Json<'_, W> {
 
     fn number(&mut self, value: f64) -> io::Result<()> {
         self.line()?;
-        // JSON has no word for what is not a number.
+        // JSON has no word for a value that is not a number.
         if value.is_finite() { write!(self.out, "{value:?}") } else { write!(self.out, "null") }
     }
 

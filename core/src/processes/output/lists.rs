@@ -19,7 +19,7 @@ fn better(name: &str, asked: &str, part: &ModelPart, system: &System) -> Option<
     if lists.iter().any(|(list, knows)| *list == asked && *knows) {
         return None;
     }
-    // processes write into columns without history while a run goes on, as what they extrapolate
+    // processes write into columns without history during a run, such as extrapolated values
     let lists = if asked == VALUES { &lists[..1] } else { &lists[..] };
     lists.iter().find(|(_, knows)| *knows).map(|(list, _)| *list)
 }

@@ -182,8 +182,8 @@ impl NewtonRaphson {
         if let Some(what) = self.first_infinite(part, system, &step.residual) {
             return Ok(Turn::Failed(format!("diverged in iteration {iteration}: {what}")));
         }
-        // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate
-        // serves for what the interactions take from it and nothing else.
+        // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate only serves the
+        // interactions that keep it.
         let restart =
             step.moved_first.is_some() && iteration == 1 && self.overshoots(part, system, &step.references.start[0])?;
         let change = self.decide(iteration, restart, step, part, system, Some(&mut increment).filter(|_| is_still))?;

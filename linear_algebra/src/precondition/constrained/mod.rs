@@ -285,7 +285,7 @@ impl Constrained {
             rows
         };
         let all: Vec<Vec<Vec<(u32, f64)>>> = parallel::map(self.groups.len(), 16, |at| of_group(&self.groups[at]));
-        // Patterns are symmetric: what stands in a column stands in the row, too.
+        // Patterns are symmetric: an entry of a column is also one of the row.
         let near = |of: fn(&Group) -> &[u32]| -> Vec<u32> {
             let mut is_near = vec![false; system.equations()];
             for &row in self.groups.iter().flat_map(of) {
