@@ -406,7 +406,7 @@ impl LinearSolver for MultigridSolver {
     fn forget(&mut self) {
         self.stand_in.forget();
         self.left.forget();
-        // Levels that processes share are not saved.
+        // Levels that ranks share are not saved.
         self.hierarchy = self.hierarchy.take().filter(|hierarchy| !hierarchy.is_old || !hierarchy.levels.is_shared());
         if let Some(hierarchy) = self.hierarchy.as_mut().filter(|hierarchy| !hierarchy.is_old) {
             (hierarchy.is_bound, hierarchy.first, hierarchy.last) = (true, None, 0.0);

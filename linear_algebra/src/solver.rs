@@ -121,7 +121,7 @@ pub trait LinearSolver: Send {
         false
     }
 
-    /// Whether it solves systems of this size, over all processes, where their rows are ([`System::shared`]).
+    /// Whether it solves systems of this size, over all ranks, where their rows are ([`System::shared`]).
     fn shares(&self, _equations: usize, _entries: usize) -> bool {
         false
     }

@@ -15,7 +15,7 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// The owners of `dofs`; `None` when this process has everything.
+    /// The owners of `dofs`; `None` when this rank has everything.
     pub fn new(dofs: &DofTable, part: &ModelPart) -> Option<Self> {
         let share = part.share.as_ref()?;
         let of_nodes = |list: &[u32]| -> Vec<u32> { dofs.dofs().iter().map(|dof| list[dof.node as usize]).collect() };

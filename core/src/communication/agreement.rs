@@ -1,7 +1,7 @@
 //! Errors that all ranks know of before any of them stops.
 //!
 //! Work that a rank does alone may fail there alone; [`Ranks::agree`] makes it fail everywhere. Errors that every rank meets alike need
-//! no agreement. Whatever is left ends all processes, see [`Ranks::end_after_failure`].
+//! no agreement. Any other failure ends all ranks, see [`Ranks::end_after_failure`].
 
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};

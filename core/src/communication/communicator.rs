@@ -1,13 +1,13 @@
 //! Collective operations of ranks, and the single rank that needs none.
 
-/// How the processes of a run reach each other: MPI, or another way that a program brings.
+/// Communication of the ranks of a run: MPI, or another way that a program brings.
 ///
 /// `gather…`, `exchange…` and `or` are collective: every rank calls them, in the same order.
 pub trait Communicator: Send + Sync {
-    /// Number of this process, from 0.
+    /// Number of this rank, from 0.
     fn rank(&self) -> usize;
 
-    /// Number of processes.
+    /// Number of ranks.
     fn size(&self) -> usize;
 
     /// The bytes of every rank, by rank.
@@ -52,10 +52,10 @@ pub trait Communicator: Send + Sync {
     /// Whether rank 0 has said that the run failed; not collective.
     fn failure_is_announced(&self) -> bool;
 
-    /// Ends all processes at once with this exit code; not collective.
+    /// Ends all ranks at once with this exit code; not collective.
     fn abort(&self, code: u8) -> !;
 
-    /// These processes as PETSc sees them, which is started when it is not running; `None` where they are not those of
+    /// These ranks as PETSc sees them, which is started when it is not running; `None` where they are not those of
     /// MPI. Collective.
     #[cfg(feature = "petsc")]
     fn petsc(&self) -> Option<crate::diagnostics::Result<zelus_petsc::Communicator>> {
@@ -63,7 +63,7 @@ pub trait Communicator: Send + Sync {
     }
 }
 
-/// One process alone.
+/// One rank alone.
 pub(super) struct Serial;
 
 impl Communicator for Serial {

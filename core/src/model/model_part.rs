@@ -55,7 +55,7 @@ pub struct ModelPart {
     pub tree: SubPart,
     /// Linear relations between unknowns.
     pub constraints: Vec<MasterSlaveConstraint>,
-    /// The processes that have this part, in whole or in shares.
+    /// The ranks that have this part, in whole or in shares.
     #[serde(skip)]
     pub ranks: Ranks,
     /// Share of this rank in a distributed mesh; `None` when this rank computes everything.

@@ -1,6 +1,6 @@
 //! The equations of all ranks added up on rank 0, where one direct solver serves them all.
 //!
-//! There they stand in the order in which one process would count them, so that its answer is that of one process.
+//! There they stand in the order in which one rank would count them, so that its solution is that of one rank.
 
 use std::sync::OnceLock;
 

@@ -83,12 +83,12 @@ struct Vectors {
     step: Vec<f32>,
 }
 
-/// The last level, which every process has whole.
+/// The last level, which every rank has whole.
 struct Coarsest {
     /// `None` when it has no equations.
     factor: Option<Factor>,
     ghosts: Ghosts,
-    /// Equations of each process.
+    /// Equations of each rank.
     counts: Vec<usize>,
 }
 
