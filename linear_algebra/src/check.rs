@@ -46,7 +46,7 @@ pub(crate) fn vectors(system: &System<'_>, rhs: &[f64], x: &[f64]) -> Result<(),
     Ok(())
 }
 
-/// Refuses matrices that are not finite; the bulk is looked at where asked for.
+/// Refuses matrices that are not finite; the bulk is checked where asked for.
 pub(crate) fn matrices(system: &System<'_>, looks_at_bulk: bool) -> Result<(), SolveError> {
     let bulk = Some(system.bulk).filter(|_| looks_at_bulk);
     for (what, matrix) in [("matrix", bulk), ("coupling matrix", system.coupling)] {

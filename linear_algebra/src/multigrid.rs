@@ -90,7 +90,7 @@ pub(crate) struct MultigridSolver {
     settings: MultigridSettings,
     constrained: Option<(Constrained, Stamps)>,
     left: LatestBlocks,
-    /// Stamps of the bulk that has been looked at last, and its equations that are zero.
+    /// Stamps of the last bulk that was checked, and its equations that are zero.
     seen: Option<([u64; 2], Vec<usize>)>,
     /// Runs of the bulk's rows, with the stamp of its graph.
     runs: Option<(u64, Runs)>,

@@ -36,7 +36,7 @@ pub(crate) struct PythonResidual {
 }
 
 impl PythonResidual {
-    /// The blocks over the entities of a part; Python hears of each, with ids and nodes.
+    /// The blocks over the entities of a part; Python receives each, with ids and nodes.
     pub(crate) fn new(number: usize, line: &Arc<Line>, own: &Description, model: &mut Model) -> Result<Self> {
         let part = model.root(&own.part)?;
         let unknowns: Vec<_> = own.unknowns.iter().map(|name| scalar(name)).collect::<Result<_, _>>()?;

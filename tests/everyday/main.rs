@@ -20,7 +20,7 @@ use model::{Look, PLAIN};
 use outcome::{Outcome, norm};
 use problems::{ALL, Punch, ball, punch};
 
-/// Problems that are looked at in several ways.
+/// Problems that are solved in several positions.
 const STEADY: [&str; 10] = [
     "press_fit",
     "lug_with_pin",

@@ -50,7 +50,7 @@ pub fn high(axis: usize) -> impl Fn(Vec3) -> bool {
     move |x| x[axis] > 1.0 - 1e-9
 }
 
-/// How a problem is looked at; its answer does not change with it.
+/// Variant of a problem: position, size, numbering, formulation; its solution does not change with it.
 #[derive(Clone, Copy)]
 pub struct Look {
     /// Angle by which everything is turned.

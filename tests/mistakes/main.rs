@@ -1,5 +1,5 @@
-//! Mistakes that a run could pass over: settings without effect, impossible states of contact, unrestrained bodies. Each is told with
-//! its place, fact and remedy, and good decks hear none of it.
+//! Mistakes that a run could pass over: settings without effect, impossible states of contact, unrestrained bodies. Each is reported
+//! with its place, fact and remedy, and good decks get no message.
 
 #[path = "../support/blocks_of_case.rs"]
 mod blocks_of_case;

@@ -281,7 +281,7 @@ fn formulations() -> Vec<(&'static str, &'static Formulation)> {
     found.into_iter().chain(by_node).collect()
 }
 
-/// Unknowns of pairs of which not all derivatives are looked at in each state.
+/// Unknowns of pairs of which not all derivatives are checked in each state.
 const LARGE: usize = 50;
 
 const INACTIVE: (bool, bool) = (false, false);

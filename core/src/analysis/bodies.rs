@@ -15,7 +15,7 @@ use crate::processes::Prescription;
 use crate::strategies::body_of;
 use crate::vector3::{add, cross, dot, norm, scale, sub};
 
-/// Most motions that are looked at: the cost grows with their third power.
+/// Largest number of modes that are analysed: the cost grows with their third power.
 const MOST: usize = 120;
 /// Share of the largest eigenvalue below which a motion meets no row.
 const FREE: f64 = 1e-10;

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use super::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Place, Result, Severity};
 
-/// How long a failed rank waits to hear that rank 0 has failed too, before it speaks for itself.
+/// Time that a failed rank waits for the failure of rank 0, before it prints its own message.
 const PATIENCE: Duration = Duration::from_secs(3);
 /// How long it then waits for rank 0 to close its files and end the run.
 const CLOSING: Duration = Duration::from_secs(600);

@@ -21,8 +21,9 @@ use crate::diagnostics::Result;
 
 /// Joins the other ranks, if the program was started as one of several; they part when the last clone is dropped.
 ///
-/// # Errors `Error::System` when several ranks were started and this program was built without the feature `mpi`, or when MPI cannot be
-/// used, as when it was joined before.
+/// # Errors
+/// `Error::System` when several ranks were started and this program was built without the feature `mpi`, or when MPI cannot be used, as
+/// when it was joined before.
 pub fn join() -> Result<Ranks> {
     let count = launched();
     if count <= 1 {

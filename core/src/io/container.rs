@@ -66,7 +66,7 @@ pub fn write_saved(ranks: &Ranks, path: &Path, contents: &impl Serialize) -> Res
     } else {
         Ok(())
     };
-    // Of a disk that refuses the others hear once they have sent all.
+    // Other ranks learn of a full disk once they have sent all.
     while send().is_some() {}
     ranks.agree(written)
 }

@@ -57,7 +57,7 @@ pub(super) fn text(mesh: &Mesh, stem: &str, space: usize, supports: &[Support]) 
         "kratos_module": "KratosMultiphysics",
         "Parameters": {{
           "model_part_name": "Structure",
-          "output_path": "vtu_output" // open the .pvd file in ParaView; without lists it has what most runs are looked at for
+          "output_path": "vtu_output" // open the .pvd file in ParaView; without lists it has the default output variables
         }}
       }}
     ]

@@ -36,7 +36,7 @@ pub(crate) struct Holding {
     said: bool,
 }
 
-/// A pair as supports are looked at.
+/// A pair, as the treatment of supports needs it.
 #[derive(Clone, Copy)]
 pub(crate) struct FacetsOfPair<'a> {
     /// The slave facet.

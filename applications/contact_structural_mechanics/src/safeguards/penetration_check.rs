@@ -9,7 +9,7 @@ use crate::interface::{Facet, Interface, Roles};
 use crate::search::{Bounds, Tree, inside};
 use crate::variables::NODAL_H;
 
-/// Share of the depth that counts by which nodes may move until they are looked at again.
+/// Share of the largest depth by which nodes may move until they are checked again.
 const STILL: f64 = 0.5;
 
 /// Results of the last check of an interface.

@@ -69,7 +69,7 @@ impl Assembler {
         Ok(out)
     }
 
-    /// Forces of interactions over all unknowns; `push` hears of those between pairs of bodies, those of this rank. Collective.
+    /// Forces of interactions over all unknowns; `push` is called with those between pairs of bodies, those of this rank. Collective.
     ///
     /// # Errors
     /// An entity that cannot be computed.

@@ -29,7 +29,7 @@ struct SaveRestart {
     folder: PathBuf,
     /// Files that are kept; `None` for all.
     most: Option<usize>,
-    /// When the clock was looked at last.
+    /// Time of the last look at the clock.
     since: Instant,
     saved: Saved,
 }
