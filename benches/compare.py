@@ -5,7 +5,7 @@
     compare.py --blocks 8 16 24 [--kinds frictionless friction] [--steps 1]
 
 A DECK is a ProjectParameters.json or its folder; `--blocks` names sizes of the decks of gen_blocks.py instead (cells along an edge of
-the lower block: 8 are 3,000 unknowns, 60 a million). All programs run on scratch copies, by turns, and times are those of the
+the lower block: 8 are 3,000 unknowns, 60 a million). All programs run on scratch copies, alternately, and times are those of the
 whole process, the shortest of the rounds, on the clock and of the processors. The latter means something on a machine that
 does other work as well; take it with one thread, since waiting threads of the reference count as busy. Memory is the
 largest of the process. Comparisons with stored results, and output in a format that one program does not know, are left
@@ -33,7 +33,7 @@ import gen_blocks
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PACKAGES = ["KratosMultiphysics", "KratosStructuralMechanicsApplication", "KratosContactStructuralMechanicsApplication",
             "KratosConstitutiveLawsApplication", "KratosLinearSolversApplication", "KratosConvectionDiffusionApplication"]
-# What the reference does not solve with amgcl: it takes the solver that it finds itself.
+# Kinds that the reference does not solve with amgcl: it takes its own default solver.
 SOLVERS = {"friction": "", "components": ""}
 REFERENCE = """
 import os, sys
@@ -139,7 +139,7 @@ def python_of_reference():
 
 
 def columns(rounds, which, form):
-    """What each program took, smallest of its rounds, and how many times as much as zelus the others."""
+    """Costs of each program, the smallest of its rounds, and the ratio of the others to zelus."""
     best = {name: None if None in done or not done else min(r[which] for r in done) for name, done in rounds.items()}
     words = []
     for name, value in best.items():
@@ -178,7 +178,7 @@ def main():
     ccx = shutil.which("ccx") if "body" in options.kinds and options.blocks else None
     names = [*programs, *(["CalculiX"] if ccx else [])]
 
-    print(f"Whole process, {options.threads} threads, best of {options.rounds} alternating rounds; in brackets the multiple of zelus.\n")
+    print(f"Whole process, {options.threads} threads, best of {options.rounds} alternating rounds; in brackets the ratio to zelus.\n")
     heads = [f"{name}, {what}" for what in ("s", "processor s", "MB") for name in names]
     print("| deck | unknowns | " + " | ".join(heads) + " | Newton × linear iterations |")
     print("|---|---:|" + "---:|" * (len(heads) + 1), flush=True)

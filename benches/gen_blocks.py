@@ -8,7 +8,7 @@ cells, guided on two sides and pressed from above with 1 MPa in equal steps; its
 Kinds: what holds the blocks apart or together, `finite` neo-Hookean bodies with finite strain, and `body`, the lower
 block alone under the load, linear, which CalculiX is given too (blocks.inp). `heat` is the lower block alone, heated from
 above and cooled from below, at rest; `thermal` the frictionless blocks with heat that passes from one to the other by their
-pressure, which makes them grow, solved by turns in each step.
+pressure, which makes them grow, with staggered coupling in each step.
 """
 import argparse
 import json

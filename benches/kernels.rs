@@ -1,4 +1,4 @@
-//! Times what runs are made of, on one thread, beside what the machine could do: `cargo bench --bench kernels`.
+//! Times of the kernels of runs, on one thread, beside the limits of the machine: `cargo bench --bench kernels`.
 //!
 //! Bounds are measured on the spot: bytes over the rate at which memory is read, operations over the rate of additions and
 //! multiplications. A harness of its own, because the bound of each line is the point of it.

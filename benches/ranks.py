@@ -3,7 +3,7 @@
 
     ranks.py [--zelus PROGRAM] [--ranks 1 2] [--rounds 3] [--engine none] DECK...
 
-A DECK is a ProjectParameters.json or its folder. Each number of ranks runs on a scratch copy, by turns, with one thread
+A DECK is a ProjectParameters.json or its folder. Each number of ranks runs on a scratch copy, alternately, with one thread
 a rank, none bound to a core; a phase's time is that of rank 0 on the clock, from the report of the run, and the table
 gives the shortest of the rounds. "steps" is the whole work of the steps: assembly, solve, and all that is sent and
 waited for. Efficiency is (ranks · time)⁻¹ relative to the first number of ranks. The last row is what processors were

@@ -44,7 +44,7 @@ fn link() {
              library PETSc was built with; MPICC names another"
         );
     }
-    // the wrapper is not what links in the end, so its libraries are asked for
+    // the wrapper does not link in the end, so its libraries are asked for
     let Ok(shown) = std::process::Command::new(&wrapper).arg("-show").output() else { return };
     for word in String::from_utf8_lossy(&shown.stdout).split_whitespace() {
         if let Some(folder) = word.strip_prefix("-L") {

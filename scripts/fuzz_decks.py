@@ -4,7 +4,7 @@
     scripts/fuzz_decks.py target/release/zelus --seconds 1200 --seed 1 --jobs 2 DECK_FOLDER...
 
 Without folders, those of tests/cases and examples whose meshes are small. A run that lasts longer than `--patience` is asked to stop
-(SIGTERM) and must do so with exit code 5 after the step under way. What fails is kept in `--keep`, with what was said.
+(SIGTERM) and must do so with exit code 5 after the step under way. Failed decks are kept in `--keep`, with the output.
 """
 
 import argparse
@@ -122,7 +122,7 @@ def limit():
 
 
 def judge(program, deck, seed, patience, keep):
-    """What is wrong with the answer to a deck with mistakes; nothing where all is well."""
+    """Faults of the answer to a deck with mistakes; nothing where all is well."""
     dice = random.Random(seed)
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch) / "deck"

@@ -5,8 +5,8 @@
     pip install pyvista matplotlib
     scripts/pictures.py [--only TEXT] [--program PATH]
 
-Examples are run as they are, cases of verification/ on the mesh that is named here; in each, a result file with all that runs are looked
-at for is added. Bodies are drawn as they are deformed, by the factor that the picture states."""
+Examples are run as they are, cases of verification/ on the mesh that is named here; in each, a result file with the default output
+variables is added. Bodies are drawn as they are deformed, by the factor that the picture states."""
 import argparse, importlib.util, json, os, re, shutil, subprocess, sys, tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))

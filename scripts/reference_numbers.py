@@ -229,7 +229,7 @@ def residual(words, step):
         node.SetSolutionStepValue(KM.NORMAL, normal)
     pair.SetValue(KM.NORMAL, step["start"][6])
     pair.Initialize(info)
-    # What calls InitializeSolutionStep of the condition.
+    # The scheme calls InitializeSolutionStep of the condition.
     KM.ResidualBasedIncrementalUpdateStaticScheme().InitializeSolutionStep(part, KM.CompressedMatrix(), KM.Vector(), KM.Vector())
     place(nodes, now)
     for node, first, x in zip(nodes, step["initial"], now):

@@ -1,6 +1,6 @@
 //! zelus: multiphysics finite elements that run Kratos contact decks unmodified.
 //!
-//! This crate links the framework and all applications, and is what programs that embed zelus depend on:
+//! This crate links the framework and all applications; programs that embed zelus depend on it:
 //!
 //! ```no_run
 //! use zelus::{RunOptions, Silent, Simulation};

@@ -46,7 +46,7 @@ enum Value {
 }
 
 impl Check {
-    /// The largest difference found and where, or what is missing.
+    /// The largest difference found and where, or the missing item.
     fn worst(&self, folder: &Path, nodes: &BTreeMap<u64, [f64; 3]>) -> Result<(f64, String), String> {
         let results = Results::read(&folder.join(&self.results))?;
         let step = results.step(self.time)?;
@@ -87,7 +87,7 @@ fn size(difference: f64) -> f64 {
     if difference.is_nan() { f64::INFINITY } else { difference }
 }
 
-/// What is wrong with a case, empty when it passes.
+/// Faults of a case, empty when it passes.
 fn run(folder: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(folder.join("case.json")).expect("case.json");
     let case: Case = match serde_json::from_str(&text) {

@@ -1,6 +1,6 @@
 //! Readers given random bytes: the targets of `fuzz`, over its corpus and mistakes made in it, for a bounded time.
 //!
-//! `ZELUS_FUZZ_SECONDS` says how long, for each target; what makes one fail is kept in the folder for temporary files.
+//! `ZELUS_FUZZ_SECONDS` says how long, for each target; failing inputs are kept in the folder for temporary files.
 
 #[path = "../fuzz/src/forge.rs"]
 mod forge;

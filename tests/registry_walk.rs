@@ -1,5 +1,5 @@
-//! Properties of every registered element and condition on its cell, and of every contact formulation on every pair of
-//! shapes: tangents are derivatives, rigid motions do what they must, the order of nodes does not matter.
+//! Properties of every registered element and condition on its cell, and of every contact formulation on every pair of shapes: tangents
+//! are derivatives, rigid-body modes give the forces they must, the order of nodes does not matter.
 //!
 //! A kind is covered by being registered. A crate with kinds of its own includes this file in its tests.
 
@@ -159,7 +159,7 @@ fn rigid_motions_strain_no_element() {
         let Some(u) = displacements(&specimen, moved) else { continue };
         specimen.set(&u);
         let force = size(specimen.residual());
-        assert!(force < 1e-10, "{}: a rigid motion needs the force {force:e}", label(entry, law));
+        assert!(force < 1e-10, "{}: a rigid-body mode needs the force {force:e}", label(entry, law));
     }
 }
 
@@ -169,7 +169,7 @@ fn loads_that_follow_a_surface_turn_with_it() {
     for (entry, shape, law) in kinds().into_iter().filter(|(entry, ..)| entry.role == Role::Condition) {
         let x = cell(shape, entry.space, 0.05, &mut random);
         let mut specimen = Specimen::new(entry, law, &x, &order(shape), Loads::Scalars).unwrap();
-        // springs to the ground resist rigid motions, loads on the initial geometry do not follow them
+        // springs to the ground resist rigid-body modes, loads on the initial geometry do not follow them
         if matches!(specimen.block.tangent(), Tangent::Constant | Tangent::Zero) {
             continue;
         }

@@ -1,4 +1,4 @@
-//! What can go wrong, said with place, fact and remedy; one error type for the whole framework.
+//! Errors and warnings with place, fact and remedy; one error type for the whole framework.
 //!
 //! Problems of the input are gathered as [`Diagnostic`]s in a [`Report`] and shown together; everything that stops a
 //! run is an [`Error`], whose variant decides the exit code of the program.
@@ -71,7 +71,7 @@ pub enum Severity {
     Error,
 }
 
-/// One problem: its name, where it is, what is the case, and what to do.
+/// One problem: its name, place, fact and remedy.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Diagnostic {
     /// Whether it stops the run.
@@ -81,9 +81,9 @@ pub struct Diagnostic {
     pub code: Name,
     /// Where, when an input file is to blame.
     pub place: Option<Place>,
-    /// What is the case, in one sentence without a final stop.
+    /// The fact, in one sentence without a final stop.
     pub fact: String,
-    /// What to do about it.
+    /// The remedy.
     pub remedy: Option<String>,
 }
 
@@ -110,7 +110,7 @@ impl Diagnostic {
         self
     }
 
-    /// The same problem with what to do about it.
+    /// The same problem with a remedy.
     #[must_use]
     pub fn remedy(mut self, remedy: impl Into<String>) -> Self {
         self.remedy = Some(remedy.into());
@@ -193,7 +193,7 @@ pub enum Error {
     /// The deck is wrong: every problem found, with places (exit code 2).
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
     Input(Vec<Diagnostic>),
-    /// A step did not converge; what was accepted before it is on disk (exit code 3).
+    /// A step did not converge; the steps accepted before it are on disk (exit code 3).
     #[error("{0}")]
     NotConverged(String),
     /// The machine, a file or a solver failed (exit code 4).
@@ -238,7 +238,7 @@ impl From<WrongState> for Error {
     }
 }
 
-/// That a saved state cannot be of the run that reads it.
+/// Error: a saved state cannot be of the run that reads it.
 pub fn unfit(fact: impl Into<String>) -> Error {
     Diagnostic::error("saved-state", fact).remedy("it was saved by a run of another deck, or it is forged").into()
 }

@@ -1,7 +1,7 @@
 //! The framework of zelus: models, parameters, registries, assembly and strategies; it knows no physics.
 //!
-//! Read the modules in the order below: each uses only those above it, and data flows the same way, from the words of a
-//! deck to the numbers on disk. What is found by name is in [`registry`]; what computes is in [`entities`].
+//! Read the modules in the order below: each uses only those above it, and data flows the same way, from the words of a deck to the
+//! numbers on disk. Objects that decks name are in [`registry`]; objects that compute are in [`entities`].
 
 pub mod names;
 pub mod diagnostics;

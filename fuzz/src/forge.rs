@@ -1,8 +1,8 @@
 //! Saved runs that no program has written: numbers, texts and lists changed here and there, the lengths of the states around them put
 //! right.
 //!
-//! Nothing in the file says which byte is what. States are found by their tags, and lists by what follows a number that may be how
-//! many items there are.
+//! Nothing in the file marks the meaning of a byte. States are found by their tags, and lists by a number that may be the count of
+//! their items.
 
 /// The contents of a saved run, or of a state.
 #[derive(Clone)]

@@ -1,4 +1,4 @@
-//! What random bytes are given to.
+//! Fuzz targets, and the inputs forged from random bytes.
 
 pub mod forge;
 pub mod targets;

@@ -1,4 +1,4 @@
-//! What random bytes are given to: each reader must refuse or read them, and come back.
+//! Readers that get random bytes: each must refuse or read them, and return.
 
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -61,7 +61,7 @@ pub fn json(bytes: &[u8]) {
     let _ = Expression::parse(text);
 }
 
-/// The contents of a saved run: with a checksum that is not theirs they are refused, and read as what they are with theirs.
+/// The contents of a saved run: with a checksum that is not theirs they are refused, and read with theirs.
 pub fn checkpoint(bytes: &[u8]) {
     let whole = whole();
     let path = folder().join("random.saved");

@@ -1,4 +1,4 @@
-//! How much address space a process may have (`ulimit -v`), and what a thread reserves of it.
+//! Address space of a process (`ulimit -v`), and the share that a thread reserves.
 //!
 //! The dense kernels of the library below give each thread that multiplies matrices a workspace of twice the third cache of the
 //! whole machine. Most of its pages are never touched, so that it is no memory; but it counts against a limit of addresses, and
@@ -7,7 +7,7 @@
 use std::fs;
 use std::path::Path;
 
-/// What a thread reserves beside the workspace: its stack, and the heap that the system's allocator keeps for it.
+/// Bytes that a thread reserves beside the workspace: its stack, and the heap that the system's allocator keeps for it.
 const STACK_AND_HEAP: u64 = (2 + 64) << 20;
 /// The third cache where the system does not say, in bytes.
 const UNKNOWN_CACHE: u64 = 64 << 20;
@@ -24,7 +24,7 @@ pub fn of_a_thread() -> u64 {
     workspace() + STACK_AND_HEAP
 }
 
-/// What of it the dense kernels take when they first run.
+/// Bytes of it that the dense kernels take when they first run.
 pub(crate) fn workspace() -> u64 {
     2 * third_cache(Path::new("/sys/devices/system/cpu/cpu0/cache")).unwrap_or(UNKNOWN_CACHE)
 }

@@ -1,4 +1,4 @@
-//! What every engine does before and after its own work: look at the input, refine and measure the answer.
+//! Steps of every engine before and after its own work: check of the input, refinement and check of the solution.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -46,7 +46,7 @@ pub(crate) fn vectors(system: &System<'_>, rhs: &[f64], x: &[f64]) -> Result<(),
     Ok(())
 }
 
-/// Refuses matrices that are not finite; the bulk is looked at where asked for.
+/// Refuses matrices that are not finite; the bulk is checked where asked for.
 pub(crate) fn matrices(system: &System<'_>, looks_at_bulk: bool) -> Result<(), SolveError> {
     let bulk = Some(system.bulk).filter(|_| looks_at_bulk);
     for (what, matrix) in [("matrix", bulk), ("coupling matrix", system.coupling)] {
@@ -169,7 +169,7 @@ pub(crate) fn magnitude(system: &System<'_>, x: &[f64]) -> Vec<f64> {
     (0..x.len()).map(|i| if system.layout.is_held(i) { 0.0 } else { of_row(i) }).collect()
 }
 
-/// Whether the residual of `x` is what rounding leaves of the products it is made of, so that no method does better.
+/// Whether the residual of `x` is the rounding error of its own products, so that no method does better.
 pub(crate) fn is_rounding(system: &System<'_>, rhs: &[f64], x: &[f64]) -> bool {
     let mut residual = vec![0.0; x.len()];
     system.residual(rhs, x, &mut residual) <= ROUNDING * vector::norm(&magnitude(system, x))

@@ -59,7 +59,7 @@ fn each_tile<T: Number>(to: &mut [T], order: usize, pivots: usize, work: impl Fn
     for_each(order * pivots > PARALLEL_WORK / 8, tiles, |(first, tile)| work(*first, tile));
 }
 
-/// Keeps the trapezoid of a matrix whose column `k` is `column(k)`; what stands above the diagonal is of no account.
+/// Keeps the trapezoid of a matrix whose column `k` is `column(k)`; entries above the diagonal are not used.
 pub(crate) fn keep_columns<'a, T: Number>(
     to: &mut [T],
     order: usize,
@@ -73,7 +73,7 @@ pub(crate) fn keep_columns<'a, T: Number>(
     });
 }
 
-/// Keeps the trapezoid of a matrix whose row `i` is `row(i)`; what stands above the diagonal is of no account.
+/// Keeps the trapezoid of a matrix whose row `i` is `row(i)`; entries above the diagonal are not used.
 pub(crate) fn keep_rows<'a, T: Number>(
     to: &mut [T],
     order: usize,

@@ -1,4 +1,4 @@
-//! Which items are connected.
+//! Connected components of items.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 

@@ -30,7 +30,7 @@ impl Spectrum {
 /// Estimates the extreme eigenvalues of `bulk + coupling` by power and inverse power iteration, to a few digits.
 ///
 /// # Errors
-/// Those of the direct engine, [`SolveError::Singular`] among them.
+/// Errors of the direct engine, [`SolveError::Singular`] among them.
 pub fn condition_number(system: &System<'_>) -> Result<Spectrum, SolveError> {
     let start = check::pseudo_random(system.equations());
     let largest = growth(start.clone(), |x, y| {

@@ -105,7 +105,7 @@ impl Csr {
         Self { rows, row_starts, columns, column_starts, ..Self::nothing() }.checked()
     }
 
-    /// The same matrix, whose columns have been looked at.
+    /// The same matrix, with its columns checked.
     fn checked(self) -> Self {
         parallel::ranges(self.rows, ROWS_PER_TASK, &|rows| {
             for i in rows {

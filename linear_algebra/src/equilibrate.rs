@@ -3,7 +3,7 @@
 use crate::csr::Csr;
 use crate::multifrontal::Scaling;
 
-/// Rounds of scaling; each takes the square root of what the one before left.
+/// Rounds of scaling; each takes the square root of the remaining factor.
 const ROUNDS: usize = 3;
 
 /// The power of two nearest to `1 / sqrt(largest)`, so that scaling is exact; one for an empty row.

@@ -1,35 +1,35 @@
-//! Vectors that several processes share: each has items of its own and copies, *ghosts*, of items of others.
+//! Vectors that several ranks share: each has items of its own and copies, *ghosts*, of items of others.
 
 use std::fmt;
 use std::sync::Arc;
 
 use crate::vector::{self, Number};
 
-/// How the processes that share a system reach each other; every method but the first two is collective.
+/// Communication of the ranks that share a system; every method but the first two is collective.
 pub trait Processes: Send + Sync {
-    /// Number of this process, from 0.
+    /// Number of this rank, from 0.
     fn rank(&self) -> usize;
 
-    /// Number of processes.
+    /// Number of ranks.
     fn size(&self) -> usize;
 
-    /// What every process gives, one after another; each gives as many numbers.
+    /// The numbers of every rank, one after another; each gives as many numbers.
     fn gather(&self, own: &[f64]) -> Vec<f64>;
 
-    /// As [`Processes::exchange_numbers`], where `counts` says how many come from each process.
+    /// As [`Processes::exchange_numbers`], where `counts` says how many come from each rank.
     fn exchange_counted(&self, parts: &[Vec<f64>], counts: &[usize]) -> Vec<Vec<f64>>;
 
-    /// Sends `parts[r]` to process r; gives what each process sent here.
+    /// Sends `parts[r]` to rank r; returns the numbers from each rank.
     fn exchange_numbers(&self, parts: &[Vec<f64>]) -> Vec<Vec<f64>>;
 
-    /// Sends `parts[r]` to process r; gives what each process sent here.
+    /// Sends `parts[r]` to rank r; returns the indices from each rank.
     fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>>;
 }
 
-/// An item of another process: who owns it, and its number among the items there.
+/// An item of another rank: its owner, and its number among the items there.
 pub type Owned = (u32, u32);
 
-/// Where the items of a vector are: own ones, ghosts, and others of which this process knows nothing.
+/// Places of the items of a vector: own ones, ghosts, and others of which this rank knows nothing.
 #[derive(Clone)]
 pub struct Ghosts {
     processes: Option<Arc<dyn Processes>>,
@@ -40,9 +40,9 @@ pub struct Ghosts {
     all: usize,
     /// Each ghost: its place, and its owner with its number among the items that this one owns.
     owned: Vec<(u32, Owned)>,
-    /// Own items that each process has ghosts of.
+    /// Own items that each rank has ghosts of.
     sent: Vec<Vec<u32>>,
-    /// Ghosts of items of each process.
+    /// Ghosts of items of each rank.
     received: Vec<Vec<u32>>,
 }
 
@@ -53,13 +53,13 @@ impl fmt::Debug for Ghosts {
 }
 
 impl Ghosts {
-    /// A process that has all items itself.
+    /// A rank that has all items itself.
     pub fn none(own: usize) -> Self {
         let (places, owned, sent, received) = Default::default();
         Self { processes: None, places, own, all: own, owned, sent, received }
     }
 
-    /// A process with `own` items, the first, and ghosts of these after them; collective.
+    /// A rank with `own` items, the first, and ghosts of these after them; collective.
     pub(crate) fn after(processes: Arc<dyn Processes>, own: usize, owned: &[Owned]) -> Self {
         let ghosts: Vec<(u32, Owned)> = (own as u32..).zip(owned.iter().copied()).collect();
         let all = own + ghosts.len();
@@ -68,7 +68,7 @@ impl Ghosts {
         made
     }
 
-    /// A process with own items at `places`, ascending, among `all`, and these ghosts; collective.
+    /// A rank with own items at `places`, ascending, among `all`, and these ghosts; collective.
     pub fn new(processes: Arc<dyn Processes>, places: Vec<u32>, all: usize, owned: Vec<(u32, Owned)>) -> Self {
         let mut received = vec![Vec::new(); processes.size()];
         let mut wanted = vec![Vec::new(); processes.size()];
@@ -99,7 +99,7 @@ impl Ghosts {
         all
     }
 
-    /// Of each place, whether it is that of an own item.
+    /// Mask of places of own items.
     pub(crate) fn is_own(&self) -> Vec<bool> {
         let mut is_own = vec![false; self.all];
         match self.places.is_empty() {
@@ -109,7 +109,7 @@ impl Ghosts {
         is_own
     }
 
-    /// The processes, where there are several.
+    /// The ranks, where there are several.
     pub(crate) fn processes(&self) -> Option<&Arc<dyn Processes>> {
         self.processes.as_ref()
     }
@@ -129,12 +129,12 @@ impl Ghosts {
         &self.owned
     }
 
-    /// Own items that each process has ghosts of.
+    /// Own items that each rank has ghosts of.
     pub(crate) fn sent(&self) -> &[Vec<u32>] {
         &self.sent
     }
 
-    /// Ghosts of items of each process.
+    /// Ghosts of items of each rank.
     pub(crate) fn received(&self) -> &[Vec<u32>] {
         &self.received
     }
@@ -146,24 +146,24 @@ impl Ghosts {
         for_each(&self.received, arrived, width, |at, value| values[at] = T::from_f64(value));
     }
 
-    /// Adds what ghosts hold to the items of their owners; collective.
+    /// Adds the values of ghosts to the items of their owners; collective.
     pub(crate) fn collect(&self, values: &mut [f32], width: usize) {
         let Some(processes) = &self.processes else { return };
         let arrived = processes.exchange_counted(&packed(&self.received, values, width), &counts(&self.sent, width));
         for_each(&self.sent, arrived, width, |at, value| values[at] += value as f32);
     }
 
-    /// The sum of one number of each process; collective.
+    /// The sum of one number of each rank; collective.
     pub(crate) fn total(&self, own: f64) -> f64 {
         self.processes.as_ref().map_or(own, |processes| processes.gather(&[own]).iter().sum())
     }
 
-    /// The largest of one number of each process; collective.
+    /// The largest of one number of each rank; collective.
     pub(crate) fn largest(&self, own: f64) -> f64 {
         self.processes.as_ref().map_or(own, |processes| processes.gather(&[own]).into_iter().fold(own, f64::max))
     }
 
-    /// Whether any process says so; collective.
+    /// Whether it is true on any rank; collective.
     pub(crate) fn any(&self, own: bool) -> bool {
         self.largest(f64::from(u8::from(own))) > 0.0
     }

@@ -66,7 +66,7 @@ struct Lone {
     others: Vec<(u32, f64)>,
 }
 
-/// What the coupling says about the equations of an interface.
+/// Partition of the equations of an interface, as the coupling decides it.
 struct Parts {
     lone: Vec<Lone>,
     /// Local index of each equation of the dense block.

@@ -16,7 +16,7 @@ use crate::state::{State, WrongState};
 use crate::system::{Stamps, System};
 use crate::vector;
 
-/// Which iteration.
+/// Krylov method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Method {
     ConjugateGradient,
@@ -43,8 +43,8 @@ impl Method {
 /// Directions kept when GMRES stands in for conjugate gradients.
 const STAND_IN_RESTART: usize = 60;
 
-/// The engines [`crate::Engine::ConjugateGradient`] and [`crate::Engine::Gmres`]; the direct engine takes over what
-/// they cannot do, and the report says so.
+/// The engines [`crate::Engine::ConjugateGradient`] and [`crate::Engine::Gmres`]; the direct engine takes over systems that they cannot
+/// solve, and the report says so.
 pub(crate) struct KrylovSolver {
     method: Method,
     settings: KrylovSettings,
@@ -55,7 +55,7 @@ pub(crate) struct KrylovSolver {
     refused: Option<NotCondensable>,
 }
 
-/// What an iteration gave and what it took.
+/// Result and cost of an iteration.
 struct Iterated {
     progress: Progress,
     method: Method,
@@ -116,7 +116,7 @@ impl KrylovSolver {
         Iterated { progress, method, seconds_preconditioner }
     }
 
-    /// Iterates on the system without multipliers, and corrects for what the condensation left out.
+    /// Iterates on the system without multipliers, and corrects for the terms that the condensation left out.
     fn iterate_condensed(
         &mut self,
         settings: &CondensationSettings,

@@ -23,15 +23,15 @@ const INCOMPLETE: u64 = 12;
 /// Bytes of the vectors of an iteration for each equation, and of levels whose blocks are few.
 const VECTORS: u64 = 800;
 
-/// Gives memory that this process has freed back to the system, where the C library keeps it: what is taken next is then not added to
-/// it in the peak.
+/// Gives memory that this process has freed back to the system, where the C library keeps it: later allocations then do not add to it
+/// in the peak.
 pub fn give_back() {
     #[cfg(all(target_os = "linux", target_env = "gnu"))]
     {
         unsafe extern "C" {
             fn malloc_trim(pad: usize) -> i32;
         }
-        // SAFETY: it takes no pointer, and touches only what is free.
+        // SAFETY: it takes no pointer, and touches only free memory.
         unsafe { malloc_trim(0) };
     }
 }
@@ -63,8 +63,8 @@ pub(crate) fn incomplete(equations: usize, entries: usize) -> u64 {
     INCOMPLETE * entries as u64 + VECTORS * equations as u64
 }
 
-/// Bytes that this process may still take: what the machine has free, within the limits of its control groups and of its addresses,
-/// of which threads have their share; `None` where the system does not say.
+/// Bytes that this process may still take: the free memory of the machine, within the limits of its control groups and of its
+/// addresses, of which threads have their share; `None` where the system does not tell.
 pub fn available() -> Option<u64> {
     let machine = fs::read_to_string("/proc/meminfo").ok().and_then(|text| free_of_machine(&text));
     let groups = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
@@ -90,7 +90,7 @@ fn free_of_machine(meminfo: &str) -> Option<u64> {
     kilobytes(meminfo, "MemAvailable:")
 }
 
-/// The folders of the control groups that bound the memory of a process, from what /proc/self/cgroup says of it.
+/// The folders of the control groups that bound the memory of a process, from its /proc/self/cgroup.
 fn folders(groups: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for line in groups.lines() {
@@ -107,7 +107,7 @@ fn folders(groups: &str) -> Vec<PathBuf> {
     found
 }
 
-/// What a control group leaves; pages of files that it can give back count as free.
+/// Free memory of a control group; pages of files that it can give back count as free.
 fn free_of_group(folder: &Path) -> Option<u64> {
     let number = |names: [&str; 2]| {
         let texts = names.into_iter().filter_map(|name| fs::read_to_string(folder.join(name)).ok());

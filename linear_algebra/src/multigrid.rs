@@ -1,5 +1,5 @@
-//! The engine of big systems: flexible GMRES on the whole system in double precision, each direction of which is a solve of what its
-//! constraints leave, in single precision with multigrid ([`Blocks`]), or one cycle where a hierarchy of an earlier matrix needs few.
+//! Engine of large systems: flexible GMRES on the whole system in double precision, preconditioned by a single-precision multigrid solve
+//! of the reduced system ([`Blocks`]), or by one cycle where a hierarchy of an earlier matrix needs few iterations.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -22,15 +22,15 @@ use crate::vector;
 
 /// Directions kept before a restart.
 const RESTART: usize = 80;
-/// Iterations from which on it pays to make what the constraints leave, where the hierarchy is one of an earlier matrix: of a new bulk,
-/// and of one that only has other constraints, most of whose rows are known.
+/// Iterations from which on it pays to make the reduced system, where the hierarchy is one of an earlier matrix: of a new bulk, and of
+/// one that only has other constraints, most of whose rows are known.
 const PAYS: [f64; 2] = [10.0, 3.0];
 /// Share of a residual that a solve leaves at least: beyond it rounding counts.
 const REACHED: f64 = 1e-4;
-/// What a solve leaves at most.
+/// Largest share of a residual that a solve may leave.
 const COARSEST_AIM: f64 = 0.5;
-/// Accuracy of a solve, as a share of what the one before was worth to the whole system: beyond it the constraints that the blocks
-/// leave out count.
+/// Accuracy of a solve, relative to the gain of the one before for the whole system: beyond it the constraints that the blocks leave
+/// out count.
 const WORTH: f64 = 0.3;
 /// Growth of the iterations by digit, and their number beside it, from which on the hierarchy is made anew.
 const STALE: (f64, f64) = (1.3, 0.3);
@@ -53,10 +53,10 @@ const YIELDS_UP_TO: usize = 70_000;
 #[derive(Clone, Serialize, Deserialize)]
 struct Hierarchy {
     levels: Arc<Multigrid>,
-    /// What their matrix was divided by.
+    /// Divisor of their matrix.
     size: f64,
     bulk_graph: u64,
-    /// What the nodes with multipliers prescribed.
+    /// Motions that the nodes with multipliers prescribed.
     prescribed: Vec<(u32, u32)>,
     /// Whether the matrix has changed since.
     is_old: bool,
@@ -85,18 +85,18 @@ impl Hierarchy {
     }
 }
 
-/// The engine [`crate::Engine::Multigrid`]; the direct engine takes over what it cannot do, and the report says so.
+/// The engine [`crate::Engine::Multigrid`]; the direct engine takes over systems that it cannot solve, and the report says so.
 pub(crate) struct MultigridSolver {
     settings: MultigridSettings,
     constrained: Option<(Constrained, Stamps)>,
     left: LatestBlocks,
-    /// Stamps of the bulk that has been looked at last, and its equations that are zero.
+    /// Stamps of the last bulk that was checked, and its equations that are zero.
     seen: Option<([u64; 2], Vec<usize>)>,
-    /// Of the bulk's rows, with the stamp of its graph.
+    /// Runs of the bulk's rows, with the stamp of its graph.
     runs: Option<(u64, Runs)>,
     hierarchy: Option<Hierarchy>,
     learnt: Learnt,
-    /// The iterations on the whole system, and on what the constraints leave.
+    /// The iterations on the whole system, and on the reduced system.
     outer: Gmres<f64>,
     inner: Gmres<f32>,
     /// Relative residual to reach.
@@ -104,7 +104,7 @@ pub(crate) struct MultigridSolver {
     stand_in: DirectSolver,
 }
 
-/// What the engine has learnt.
+/// State that the engine keeps between solves.
 #[derive(Clone, Default, Serialize, Deserialize)]
 struct Learnt {
     answers: Answers,
@@ -118,7 +118,7 @@ struct Learnt {
 #[serde(remote = "Self")]
 struct MultigridState {
     learnt: Learnt,
-    /// That of an earlier matrix than the last.
+    /// Hierarchy of an earlier matrix than the last.
     hierarchy: Option<Hierarchy>,
     stand_in: Option<Box<dyn State>>,
 }
@@ -143,7 +143,7 @@ impl MultigridSolver {
         Self { settings, constrained, left, seen, runs, hierarchy, learnt, outer, inner, tolerance, stand_in }
     }
 
-    /// Solves a system that several processes share; one that does not does less than the rest, so all agree on errors.
+    /// Solves a system that several ranks share; one that does not does less than the rest, so all agree on errors.
     fn solve_shared(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
         let checked = check::input(system, rhs, x).and_then(|()| check::empty_rows(system));
         if system.ghosts().any(checked.is_err()) {
@@ -156,7 +156,7 @@ impl MultigridSolver {
         solved
     }
 
-    /// Whether multigrid is to solve a system, by its size and what came of it before.
+    /// Whether multigrid is to solve a system, by its size and the outcome of earlier solves.
     fn serves(&self, system: &System<'_>) -> bool {
         self.shares(system.free(), system.bulk.entries())
     }
@@ -226,12 +226,12 @@ impl MultigridSolver {
         let scales = &ghosts.narrow(&constrained.row_scales);
         let scale = |r: &mut [f64]| vector::scale_each(scales, r);
         let (mut b, mut start) = (ghosts.narrow(rhs), ghosts.narrow(x));
-        // Of several processes, none that one owns is held.
+        // Over several ranks no equation that a rank owns is inactive.
         if system.shared.is_none() {
             system.clear_held(&mut b);
         }
         scale(&mut b);
-        // What makes a product of one with the bulk.
+        // Completes a product with the bulk to one with the whole system.
         let complete = |x: &[f64], y: &mut [f64]| {
             system.add_coupling_product(x, y);
             system.clear_held(y);
@@ -406,7 +406,7 @@ impl LinearSolver for MultigridSolver {
     fn forget(&mut self) {
         self.stand_in.forget();
         self.left.forget();
-        // Levels that processes share are not saved.
+        // Levels that ranks share are not saved.
         self.hierarchy = self.hierarchy.take().filter(|hierarchy| !hierarchy.is_old || !hierarchy.levels.is_shared());
         if let Some(hierarchy) = self.hierarchy.as_mut().filter(|hierarchy| !hierarchy.is_old) {
             (hierarchy.is_bound, hierarchy.first, hierarchy.last) = (true, None, 0.0);

@@ -78,7 +78,7 @@ pub fn from_bytes<T: DeserializeOwned>(bytes: &[u8]) -> Result<T> {
     read_with(bytes, |reader| T::deserialize(reader))
 }
 
-/// Appends what `write` writes.
+/// Appends the output of `write`.
 ///
 /// # Errors
 /// As [`append`].
@@ -99,7 +99,7 @@ pub fn read_with<T>(bytes: &[u8], read: impl FnOnce(&mut Reader<'_>) -> postcard
     }
 }
 
-/// Postcard keeps no words of what a type says against its bytes.
+/// Postcard does not keep the messages of a type that rejects its bytes.
 fn unread(error: postcard::Error) -> Error {
     if error == postcard::Error::DeserializeUnexpectedEnd { Error::EndsEarly } else { Error::Unknown }
 }

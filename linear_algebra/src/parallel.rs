@@ -116,7 +116,7 @@ pub fn copied<T: Copy + Send + Sync>(values: &[T], length: usize) -> Vec<T> {
     out
 }
 
-/// Those of `0..count` for which `is_so`, ascending; `length` of them are a task.
+/// Indices of `0..count` for which `is_so`, ascending; `length` of them are a task.
 ///
 /// # Panics
 /// As [`ranges`].
@@ -142,7 +142,7 @@ pub fn of_ranges(count: usize, length: usize, of: &(dyn Fn(Range<usize>) -> f64 
     map(count.div_ceil(length), 1, |part| of(part * length..(part * length + length).min(count)))
 }
 
-/// The largest of `of(i)` for i in `0..count`, at least zero; `length` of them are a task. What is not a number does not count.
+/// The largest of `of(i)` for i in `0..count`, at least zero; `length` of them are a task. Entries that are not a number do not count.
 ///
 /// # Panics
 /// As [`ranges`].

@@ -1,13 +1,13 @@
 //! Asking for memory before it is read: processors do so themselves only within a page.
 
-/// Bytes between what is read and what is asked for, where entries are read one after the other.
+/// Bytes between the present and the prefetched address, where entries are read one after the other.
 pub(crate) const AHEAD: usize = 6144;
 /// Rows between one of which little is read and the one that is asked for.
 pub(crate) const ROWS_AHEAD: usize = 16;
 /// Bytes that come at a time.
 const LINE: usize = 64;
 
-/// Asks for what stands so many bytes behind the start of `values`; that may be beyond the end.
+/// Prefetches the cache line so many bytes behind the start of `values`; that may be beyond the end.
 #[inline(always)]
 pub(crate) fn prefetch<T>(values: &[T], bytes: usize) {
     let address = values.as_ptr().cast::<i8>().wrapping_add(bytes);

@@ -15,7 +15,7 @@ pub(crate) struct Reduced {
 const NONE: u32 = u32::MAX;
 
 impl Reduced {
-    /// What is left of a system that is not shared.
+    /// The reduced system of a system that is not shared.
     pub(crate) fn new(system: &System<'_>) -> Self {
         let whole = system.layout;
         let equations: Vec<u32> = (0..system.equations() as u32).filter(|&e| !whole.is_held(e as usize)).collect();

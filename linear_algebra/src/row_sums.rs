@@ -11,7 +11,7 @@ const GATHERED: usize = 96;
 /// Products of rows between one whose columns are read and the one whose columns are asked for.
 const PRODUCTS_AHEAD: usize = 4;
 
-/// Room for what is gathered, which serves row after row.
+/// Room for gathered entries, reused row after row.
 pub(crate) type Gathered = [f64; GATHERED];
 
 /// Room for the entries of a vector.

@@ -1,11 +1,11 @@
-//! The one interface of all solvers, what they report and how they fail.
+//! The one interface of all solvers, their reports and errors.
 
 use crate::condensation::{CondensationSettings, NotCondensable};
 use crate::csr::Csr;
 use crate::state::{State, WrongState};
 use crate::system::{Layout, System};
 
-/// What one solve did.
+/// Report of one solve.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SolveReport {
     /// The engine that gave the answer.
@@ -64,12 +64,12 @@ pub enum SolveError {
     /// The multipliers cannot be condensed, and the settings allow no other way.
     #[error("the multipliers cannot be condensed: {0}")]
     NotCondensable(NotCondensable),
-    /// The input is unusable or the machine gave up; the text says what happened.
+    /// The input is unusable or the machine gave up; the text names the cause.
     #[error("{0}")]
     Failed(String),
 }
 
-/// A solver of sparse linear systems that keeps what it can reuse between solves.
+/// A solver of sparse linear systems that keeps reusable data between solves.
 pub trait LinearSolver: Send {
     /// Name of the engine, as in [`SolveReport::engine`].
     fn name(&self) -> &'static str;
@@ -86,16 +86,16 @@ pub trait LinearSolver: Send {
     /// too large, [`SolveError::Failed`] for input that is not finite or does not fit. `x` is then not an answer.
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError>;
 
-    /// Forgets what would let later answers depend on earlier matrices, but for what [`LinearSolver::state`] holds: a solver
-    /// without past that takes up the state gives the same digits from here on. Called as each step of a run begins.
+    /// Drops caches, so that a restarted run gives the same bits: later solutions depend on earlier matrices through
+    /// [`LinearSolver::state`] only. Called at the start of each step of a run.
     fn forget(&mut self) {}
 
-    /// What it has learnt from the solves so far; one that passes solves on passes these on, too.
+    /// State from the solves so far; a solver that wraps another passes on the other's.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
 
-    /// Takes up what another of its kind has learnt from the same systems.
+    /// Restores the state that another of its kind has from the same systems.
     ///
     /// # Errors
     /// The state of another kind.
@@ -103,7 +103,7 @@ pub trait LinearSolver: Send {
         Ok(())
     }
 
-    /// Says what relative residual is enough for the next solves; engines ask no more of themselves than their settings do.
+    /// Sets the relative residual that is enough for the next solves; engines ask no more of themselves than their settings do.
     fn aim(&mut self, _: f64) {}
 
     /// Bytes that it takes beside the matrix, about, for systems of this size; 0 where that is not known.
@@ -121,7 +121,7 @@ pub trait LinearSolver: Send {
         false
     }
 
-    /// Whether it solves systems of this size, over all processes, where their rows are ([`System::shared`]).
+    /// Whether it solves systems of this size, over all ranks, where their rows are ([`System::shared`]).
     fn shares(&self, _equations: usize, _entries: usize) -> bool {
         false
     }
@@ -132,7 +132,7 @@ pub trait LinearSolver: Send {
     }
 }
 
-/// Which solver to create, with its settings.
+/// Kind of solver to create, with its settings.
 #[derive(Debug, Clone)]
 pub enum Engine {
     /// Multifrontal factorisation with the interface in a dense Schur complement; the default.
@@ -190,7 +190,7 @@ pub struct KrylovSettings {
     pub iterations: usize,
     /// The preconditioner.
     pub preconditioner: Preconditioner,
-    /// What is done with systems that have multipliers.
+    /// Treatment of systems that have multipliers.
     pub multipliers: Multipliers,
 }
 
@@ -205,7 +205,7 @@ impl Default for KrylovSettings {
     }
 }
 
-/// What a Krylov engine does with a system that has multipliers.
+/// Treatment of multipliers by a Krylov engine.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub enum Multipliers {
     /// It leaves the system to the direct engine.

@@ -11,7 +11,7 @@ const MUCH: usize = 1 << 22;
 
 /// A square matrix, column-major in its tiles; tiles of a symmetric one begin with the row of their first column.
 ///
-/// What stands above the diagonal in the tiles of a symmetric matrix is of no account.
+/// Entries above the diagonal in the tiles of a symmetric matrix are not used.
 #[derive(Debug, Default)]
 pub(crate) struct Square {
     order: usize,

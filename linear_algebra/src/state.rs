@@ -1,25 +1,25 @@
-//! What something remembers between the steps of a run, as it stands in a file.
+//! State that an object keeps between the steps of a run, as it stands in a file.
 
 use std::any::{Any, type_name};
 use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
-/// What a participant of a run, as a solver, remembers beside the fields of the model.
+/// State of a participant of a run, e.g. a solver, beside the fields of the model.
 ///
 /// Each type of participant states its own in its own file: a type that serde writes and reads, with
 /// `#[typetag::serde] impl State for …`, whose name tags it in the file.
 #[typetag::serde]
 pub trait State: Any + Send + Sync {
-    /// Shows what it holds of nodes and unknowns to a carrier, which takes it to other ranks, and drops what is cheap to make
-    /// again and belongs to the ranks it was made on. What it shows must not depend on which of the ranks it is.
+    /// Shows its data of nodes and unknowns to a carrier, which maps them to other ranks, and drops data that are cheap to make again
+    /// and belong to the old ranks. The sequence of its calls must not depend on which of the ranks it is.
     fn carry(&mut self, carrier: &mut dyn Carrier);
 }
 
-/// Takes what ranks remember to other ranks that run the same deck.
+/// Maps states of ranks to other ranks that run the same deck.
 ///
-/// It is shown the states of all ranks that were, then that of one to come as it begins, and at last that of the first rank once
-/// more, into which it puts what the one to come is to remember.
+/// It visits the states of all earlier ranks, then that of a new one at its start. At last it visits that of the first rank once more,
+/// and writes the state of the new one into it.
 pub trait Carrier {
     /// Indices of nodes that every rank has.
     fn nodes(&mut self, nodes: &mut [u32]);

@@ -1,4 +1,4 @@
-//! What a solver is given: the equations and their matrix in two parts.
+//! Input of a solver: the equations and their matrix in two parts.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,7 +7,7 @@ use crate::ghosts::Ghosts;
 use crate::parallel;
 use crate::vector::{self, CHUNK};
 
-/// What is known of a matrix before it is factorised.
+/// Symmetry of a matrix, known before it is factorised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Symmetry {
     /// Symmetric and expected positive definite, at least once the interface is held.
@@ -18,7 +18,7 @@ pub enum Symmetry {
     General,
 }
 
-/// What the equations stand for, which decides their ordering.
+/// Meaning of the equations, which decides their ordering.
 ///
 /// `node` and `multiplier` have one entry an equation. Equations of one node are ordered together, so equations that
 /// share a node should share their columns too.
@@ -28,10 +28,10 @@ pub struct Layout {
     pub node: Vec<u32>,
     /// Whether the equation is that of a multiplier.
     pub multiplier: Vec<bool>,
-    /// Vectors the bulk nearly maps to zero (rigid motions), for multigrid; may be empty.
+    /// Vectors the bulk nearly maps to zero (rigid-body modes), for multigrid; may be empty.
     pub near_null_space: Vec<Vec<f64>>,
-    /// Which equations are none: their rows, columns and numbers count for nothing, and what is found of them is zero. Empty where
-    /// there are none. For solvers that say so ([`LinearSolver::takes_held`](crate::LinearSolver::takes_held)).
+    /// Inactive rows (Dirichlet): solvers skip their rows, columns and right-hand sides, and return zero there. Empty where there are
+    /// none. For solvers that say so ([`LinearSolver::takes_held`](crate::LinearSolver::takes_held)).
     pub held: Vec<bool>,
 }
 
@@ -62,18 +62,18 @@ impl Layout {
     }
 }
 
-/// The equations `(bulk + coupling) x = b`, with stamps that tell what changed since the last solve.
+/// The equations `(bulk + coupling) x = b`, with stamps that tell changes since the last solve.
 ///
 /// `coupling` touches few equations (the contact interface: slave and master displacements and multipliers); rows of
 /// multipliers are empty in `bulk`. A stamp that equals the one of the previous solve with the same solver promises
 /// that the thing it stamps is unchanged, so work done on it is reused. A changed layout changes `bulk_graph`.
 #[derive(Debug, Clone, Copy)]
 pub struct System<'a> {
-    /// What the equations stand for.
+    /// Meaning of the equations.
     pub layout: &'a Layout,
     /// The part that does not come from contact.
     pub bulk: &'a Csr,
-    /// What is known of `bulk`.
+    /// Symmetry of `bulk`.
     pub bulk_symmetry: Symmetry,
     /// Stamp of the layout and of the pattern of `bulk`.
     pub bulk_graph: u64,
@@ -87,9 +87,9 @@ pub struct System<'a> {
     pub coupling_values: u64,
     /// Whether `coupling` is symmetric.
     pub coupling_symmetric: bool,
-    /// Which equations are those of other processes, where several share the system: own rows are complete, those of ghosts
-    /// only where multipliers act on their node. The bulk then has rows for the first equations alone, and the coupling the
-    /// rest of them. `None` where all equations are here.
+    /// Equations of other ranks, where several share the system: own rows are complete, those of ghosts only where multipliers act on
+    /// their node. The bulk then has rows for the first equations alone, and the coupling the rest of them. `None` where all equations
+    /// are here.
     pub shared: Option<&'a Ghosts>,
 }
 
@@ -125,7 +125,7 @@ impl<'a> System<'a> {
         self.equations() - self.layout.held.iter().filter(|is_held| **is_held).count()
     }
 
-    /// Sets what belongs to equations that are held to zero.
+    /// Sets the entries of inactive rows to zero.
     pub fn clear_held(&self, values: &mut [f64]) {
         let held = &self.layout.held;
         let known = values.len().min(held.len());
@@ -209,7 +209,7 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Which equations are here and which are others'.
+    /// Own equations and those of other ranks.
     pub(crate) fn ghosts(&self) -> Ghosts {
         self.shared.cloned().unwrap_or_else(|| Ghosts::none(self.equations()))
     }

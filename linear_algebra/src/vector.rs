@@ -7,7 +7,7 @@ use crate::parallel;
 /// Entries of one task.
 pub(crate) const CHUNK: usize = 1 << 14;
 
-/// `n` zeros, written by all threads. What adds to memory that nothing has written yet makes the system map it twice, and all processors
+/// `n` zeros, written by all threads. Addition to memory that nothing has written yet makes the system map it twice, and all processors
 /// wait for each other.
 pub fn zeros<T: Number>(n: usize) -> Vec<T> {
     let mut out = vec![T::default(); n];

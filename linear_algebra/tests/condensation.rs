@@ -1,4 +1,4 @@
-//! Condensed systems against whole ones, and what cannot be condensed.
+//! Condensed systems against whole ones, and systems that cannot be condensed.
 
 mod samples;
 
@@ -8,7 +8,7 @@ use zelus_linear_algebra::{
     Multipliers, NotCondensable, Preconditioner, SolveError, Symmetry, System, create,
 };
 
-/// What the multipliers of a slave node say.
+/// Contact state, hence the equations of the multipliers of a slave node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
     /// One multiplier along a normal.
@@ -57,9 +57,9 @@ impl Random {
     }
 }
 
-/// Two boxes of `n³` cells, the upper one held by the multipliers `kind` of its lowest nodes; `scale` is that of the
-/// multipliers, `off` what they do to the next slave node, relative to their own. The equations `without` of the slave
-/// nodes (node, direction) are left out.
+/// Two boxes of `n³` cells, the upper one held by the multipliers `kind` of its lowest nodes; `scale` is that of the multipliers, `off`
+/// their coefficient at the next slave node, relative to their own. The equations `without` of the slave nodes (node, direction) are
+/// left out.
 fn pressed(
     n: usize,
     kind: impl Fn(usize) -> Kind,
@@ -100,7 +100,7 @@ fn pressed(
         for c in 0..3 {
             for e in 0..3 {
                 let across = f64::from(u8::from(c == e)) - normal[c] * normal[e];
-                // Rows of the conditions, with what the motion of the operators adds.
+                // Rows of the conditions, with the terms of the motion of the operators.
                 let direction = match kind {
                     Kind::Stick => f64::from(u8::from(c == e)),
                     _ => normal[c] * normal[e],
@@ -340,7 +340,7 @@ fn sets_that_say_the_same_twice_are_refused_by_name() {
     let refused = Condensation::new(&sample.system(), &CondensationSettings::default(), 1).expect_err("undetermined");
     let NotCondensable::Undetermined { multiplier, share } = refused else { panic!("{refused:?}") };
     assert!(multiplier + 1 == sample.layout.equations() && share < 1e-12, "{refused:?}");
-    // Masters can give way, so the whole system is regular: the direct engine serves, and says so.
+    // Masters can move, so the whole system is regular: the direct engine serves, and says so.
     let b = rhs(sample.system().equations());
     let mut x = vec![0.0; b.len()];
     let multigrid = MultigridSettings { least: [0; 2], ..MultigridSettings::default() };

@@ -118,7 +118,7 @@ fn equations_that_are_held_count_for_nothing() {
             held.iter().enumerate().map(|(i, &h)| if h { 0.0 } else { 1.0 + (i % 17) as f64 }).collect();
         let mut rhs = vec![0.0; exact.len()];
         system.mul_vec(&exact, &mut rhs);
-        // What stands at equations that are held is of no account.
+        // Numbers at inactive rows are not used.
         rhs.iter_mut().zip(held).filter(|(_, is_held)| **is_held).for_each(|(b, _)| *b = 1e6);
         for mut solver in [direct(limit), single(limit)] {
             let mut x = vec![3.0; exact.len()];

@@ -48,7 +48,7 @@ fn iterations_hardly_grow() {
     assert!(iterations[2] <= iterations[0] + 10 && iterations[2] < 35, "{iterations:?}");
 }
 
-/// The sample of tied boxes with rigid motions of each.
+/// The sample of tied boxes with the rigid-body modes of each.
 fn tied(cells: usize, skew: f64, active: impl Fn(usize) -> bool) -> Contact {
     let mut sample = contact(cells, skew, active);
     let brick = Brick { cells: [cells; 3] };
@@ -285,7 +285,7 @@ fn equations_that_are_held_are_none() {
     };
     let sample = held(8, is_held);
     let n = sample.whole.layout.equations();
-    // What stands at held equations counts for nothing.
+    // Numbers at inactive rows are not used.
     let rhs: Vec<f64> =
         load(n).iter().enumerate().map(|(i, b)| if sample.whole.layout.held[i] { 1e6 } else { *b }).collect();
     let gather = |of: &[f64]| sample.equations.iter().map(|&i| of[i]).collect::<Vec<f64>>();

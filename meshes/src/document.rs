@@ -15,14 +15,14 @@ use super::mesh::{Mesh, Plane};
 /// Beginnings of the names of elements and conditions, as `SmallDisplacementElement` of `SmallDisplacementElement3D8N`.
 #[derive(Debug, Clone)]
 pub struct Names {
-    /// Of elements.
+    /// Name of elements.
     pub element: String,
-    /// Of conditions; empty: those that carry loads per length or area.
+    /// Name of conditions; empty: those that carry loads per length or area.
     pub condition: String,
 }
 
 impl Names {
-    /// Those of a format's settings.
+    /// Names in a format's settings.
     ///
     /// # Errors
     /// Keys of another type.
@@ -46,11 +46,11 @@ impl Names {
     }
 }
 
-/// Mends a mesh and makes the document of it: cells of the highest dimension are elements, those one below and in a group
-/// conditions, groups sub model parts. Gives notes of what was mended and left out.
+/// Mends a mesh and makes the document of it: cells of the highest dimension are elements, those one below and in a group conditions,
+/// groups sub model parts. Returns notes of repairs and of omitted contents.
 ///
 /// # Errors
-/// Those of [`mend`].
+/// Errors of [`mend`].
 pub fn finish(mut mesh: Mesh, settings: &Settings, path: &std::path::Path) -> Result<(MdpaDocument, Vec<Diagnostic>)> {
     let place = Place::file(path);
     let mut said = mend(&mut mesh, &place)?;
@@ -126,8 +126,8 @@ fn part(mesh: &Mesh, group: &super::mesh::Group, dimension: usize) -> SubModelPa
     out
 }
 
-/// The mesh of a document: elements, conditions and geometries become cells, sub model parts groups, those of a part
-/// `Outer.Inner` under `Outer_Inner`. What a mesh does not hold (values, properties, names) is left out.
+/// The mesh of a document: elements, conditions and geometries become cells, sub model parts groups, those of a part `Outer.Inner`
+/// under `Outer_Inner`. Contents that a mesh does not hold (values, properties, names) are left out.
 ///
 /// # Errors
 /// Names of elements, conditions and geometries that are not known.

@@ -5,7 +5,7 @@ use zelus_core::geometry::Shape;
 
 use super::mesh::Mesh;
 
-/// The corners of a face or cell, sorted: what it is known by, whatever its orientation and order.
+/// The corners of a face or cell, sorted: its key, whatever its orientation and order.
 pub type Corners = [u32; 8];
 
 /// The key of the cell with these nodes, corners first.
@@ -56,7 +56,7 @@ pub struct FaceCells {
 }
 
 impl FaceCells {
-    /// Those that the mesh has already.
+    /// Faces that the mesh has already.
     pub fn new(mesh: &Mesh) -> Self {
         let all = 0..mesh.cells.len();
         let of = all.map(|cell| (corners(mesh.cells.shapes[cell], mesh.cells.nodes(cell)), cell as u32)).collect();

@@ -1,7 +1,7 @@
 //! Meshes of other programs, read into sub model parts, elements and conditions and written back.
 //!
-//! A format reads its file into a [`mesh::Mesh`], which knows nothing of formats; [`mend`] takes out what no deck can use and
-//! turns what is turned inside out; [`document`] names elements and conditions. Each format registers itself under the name that
+//! A format reads its file into a [`mesh::Mesh`], which knows nothing of formats; [`mend`] removes cells that no deck can use and
+//! reorients those that are inside out; [`document`] names elements and conditions. Each format registers itself under the name that
 //! decks give as `"input_type"`; a plugin adds one in the same way, with this crate or without.
 
 pub mod mesh;
@@ -54,10 +54,10 @@ pub fn format(path: &Path, name: Option<&str>) -> Result<&'static MeshFormatEntr
     }
 }
 
-/// The mesh of a file, with all that its format says besides, mended; and what is said of it.
+/// The mesh of a file, with all further contents of its format, mended; and the notes.
 ///
 /// # Errors
-/// Those of the format.
+/// Errors of the format.
 pub fn read(path: &Path, format: &MeshFormatEntry) -> Result<(Mesh, Vec<Diagnostic>)> {
     let (mut mesh, mut said) = match format.name {
         "abaqus" => abaqus::read_mesh(path)?,

@@ -8,7 +8,7 @@ use zelus_core::vector3::dot;
 use super::faces::{Corners, corners, face_nodes, faces};
 use super::mesh::Mesh;
 
-/// Mends the mesh of the file at `place` and gives notes of what was done.
+/// Mends the mesh of the file at `place` and returns notes of the repairs.
 ///
 /// # Errors
 /// A mesh without elements, or of surfaces that do not lie in a plane z = constant: there are no shells.
@@ -45,8 +45,8 @@ pub fn is_planar(mesh: &Mesh) -> bool {
     mesh.points.iter().all(|point| (point[2] - first).abs() <= 1e-12 * size)
 }
 
-/// Keeps of cells with the same corners the first, and of those that are neither elements nor faces the nodes; groups that name
-/// another have what is kept.
+/// Keeps of cells with the same corners the first, and of those that are neither elements nor faces the nodes; groups that name another
+/// have the kept one.
 fn merge_cells(mesh: &mut Mesh, dimension: usize) {
     let mut first: FxHashMap<(usize, Corners), u32> = FxHashMap::default();
     let mut cells = super::mesh::Cells::default();

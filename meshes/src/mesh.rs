@@ -1,8 +1,8 @@
-//! What a mesh file of another program says, whatever its format.
+//! A mesh file of another program, in a neutral form.
 
 use zelus_core::geometry::Shape;
 
-/// Nodes, cells, named groups of both, and what an input file of a solver says besides.
+/// Nodes, cells, named groups of both, and further contents of an input file of a solver.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
     /// Id of each node, unique.
@@ -17,13 +17,13 @@ pub struct Mesh {
     pub pairs: Vec<Pair>,
     /// Materials by name.
     pub materials: Vec<Material>,
-    /// Which group is of which material.
+    /// Material of each group.
     pub sections: Vec<Section>,
     /// Degrees of freedom that the file holds.
     pub supports: Vec<Support>,
     /// Forces on nodes and pressures on faces.
     pub loads: Vec<Load>,
-    /// What a planar mesh stands for, where the file says so.
+    /// Assumption of a planar mesh (plane stress, plane strain, …), where the file names it.
     pub plane: Option<Plane>,
 }
 
@@ -140,11 +140,11 @@ pub struct Support {
 pub struct Load {
     /// The group.
     pub group: String,
-    /// What acts on it.
+    /// Kind of the load.
     pub kind: LoadKind,
 }
 
-/// What acts on a group.
+/// Load on a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LoadKind {
     /// The same force on each node.
@@ -153,7 +153,7 @@ pub enum LoadKind {
     Pressure(f64),
 }
 
-/// What a planar mesh stands for.
+/// Assumption of a planar mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Plane {
     /// A thin plate, free to change its thickness.
@@ -190,7 +190,7 @@ impl Mesh {
     }
 }
 
-/// A name as a deck can use it: what separates words and parts becomes an underscore.
+/// A name as a deck can use it: separators of words and parts become an underscore.
 pub fn word(name: &str) -> String {
     let name: String = name.trim().trim_matches('"').chars().collect();
     let keeps = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '+');

@@ -13,13 +13,13 @@ use zelus_core::registry::require;
 
 use super::vtkhdf::write_vtkhdf;
 
-/// Endings of what it writes: last that of the one file, before it those of the pictures of a run that goes on.
+/// Endings of its files: last that of the one file, before it those of the pictures of a run that continues.
 const ENDINGS: [&str; 4] = ["vtu", "pvtu", "pvd", "vtkhdf"];
 const STEPS: &[&str] = ENDINGS.split_at(3).0;
 
 struct OneFile {
     steps: Box<dyn OutputFormat>,
-    /// What it has written.
+    /// Files that it has written.
     files: Vec<PathBuf>,
 }
 

@@ -101,16 +101,16 @@ struct Found {
     masters: Vec<usize>,
 }
 
-/// Adds what is not there yet.
+/// Adds missing entries.
 fn join(list: &mut Vec<usize>, more: &[usize]) {
     list.extend(more);
     list.sort_unstable();
     list.dedup();
 }
 
-/// Finds pairs: groups of faces that hold most of what is close, else new groups `Contact_N_Slave` and `Contact_N_Master`. The side
-/// with the smaller faces is the slave. A face is the slave of one pair, which then has the masters of all that it is close to: a node has
-/// one multiplier. What the file pairs itself is left alone.
+/// Finds pairs: groups of faces that hold most of the close faces, else new groups `Contact_N_Slave` and `Contact_N_Master`. The side
+/// with the smaller faces is the slave. A face is the slave of one pair, which then has the masters of all that it is close to: a node
+/// has one multiplier. Pairs of the file itself are left alone.
 pub fn find_pairs(mesh: &mut Mesh) -> Vec<Pair> {
     let all = sides(mesh);
     let mut made = FaceCells::new(mesh);

@@ -1,4 +1,4 @@
-//! Results of all steps as XDMF: a text (`.xdmf`) that says what they are, and an HDF5 file (`.h5`) beside it with the numbers.
+//! Results of all steps as XDMF: a text (`.xdmf`) that describes them, and an HDF5 file (`.h5`) beside it with the numbers.
 //!
 //! Meshes that do not change are written once. Each cell stands with the number of its kind before its nodes, in VTK's order, which is the one
 //! that VTK's reader takes (9.7, all kinds); quantities of other numbers of components than 1 and 3 stand as matrices of one row. Source: "XDMF Model and Format", version 2.
@@ -55,7 +55,7 @@ struct Numbers {
 }
 
 impl Numbers {
-    /// Puts the mesh of a step there; what the text says of it.
+    /// Writes the mesh of a step; returns its description in the text.
     fn mesh(&mut self, at: usize, step: &Dataset) -> String {
         let cells = topology(step);
         let points = step.points.as_flattened();
@@ -74,7 +74,7 @@ impl Numbers {
         )
     }
 
-    /// Puts the columns of a step there; what the text says of them.
+    /// Writes the columns of a step; returns their description in the text.
     fn data(&mut self, at: usize, step: &Dataset) -> String {
         let mut said = String::new();
         for (center, columns) in [("Node", &step.point_data), ("Cell", &step.cell_data)] {

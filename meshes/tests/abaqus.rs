@@ -1,4 +1,4 @@
-//! What input files say of instances, surfaces, pairs, supports and loads.
+//! Input files with instances, surfaces, pairs, supports and loads.
 
 use std::path::Path;
 

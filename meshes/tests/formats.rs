@@ -88,7 +88,7 @@ fn damaged_med_files_are_refused() {
         std::fs::write(&path, &whole[..length]).unwrap();
         assert!(read(&path).is_err(), "{length} bytes");
     }
-    // A changed byte may be one of a coordinate; what matters is that nothing panics.
+    // A changed byte may be one of a coordinate; nothing must panic.
     for at in (0..whole.len()).step_by(97) {
         let mut bytes = whole.clone();
         bytes[at] ^= 0xff;
@@ -136,7 +136,7 @@ fn damaged_files_are_refused() {
         for share in 1..20 {
             let path = folder.path().join(name);
             std::fs::write(&path, &whole[..whole.len() * share / 20]).unwrap();
-            // what is cut may still be a mesh; it must never be a panic
+            // a truncated file may still be a mesh; it must never cause a panic
             if let Err(error) = read(&path) {
                 assert!(!error.to_string().is_empty());
             }

@@ -1,4 +1,4 @@
-//! Results of some steps as one file: what HDF5 finds in it is what was written step by step.
+//! Results of some steps as one file: HDF5 finds in it the data that were written step by step.
 
 use std::path::{Path, PathBuf};
 

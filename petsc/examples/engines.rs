@@ -1,7 +1,7 @@
-//! What engines take for a clamped cube of hexahedra: `mpirun -n 2 engines ENGINE CELLS…`.
+//! Time and memory of the engines for a clamped cube of hexahedra: `mpirun -n 2 engines ENGINE CELLS…`.
 //!
-//! ENGINE is `mumps_ldlt` or `cg_gamg`, on any number of ranks, or `direct` (this project's) or `faer` (supernodal Cholesky of
-//! the crate faer), on one rank and the threads of RAYON_NUM_THREADS. Memory is what each rank's peak adds to the matrix.
+//! ENGINE is `mumps_ldlt` or `cg_gamg`, on any number of ranks, or `direct` (this project's) or `faer` (supernodal Cholesky of the
+//! crate faer), on one rank and the threads of RAYON_NUM_THREADS. Memory is the peak of each rank beyond the matrix.
 
 #[path = "../tests/support/mod.rs"]
 mod support;

@@ -60,7 +60,7 @@ impl PetscEngine {
 
     /// PETSc's options for it; those of the user come after them and win.
     pub(crate) fn options(self, tolerance: f64, iterations: usize) -> String {
-        // 24: look for pivots that are zero, instead of dividing by what rounding left of them
+        // 24: look for pivots that are zero, instead of dividing by their rounding errors
         let mumps = "-ksp_type preonly -pc_factor_mat_solver_type mumps -mat_mumps_icntl_24 1";
         // a strong connection is one to a node, not to a direction, so no entry is dropped
         let gamg = format!(

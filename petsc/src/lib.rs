@@ -1,8 +1,8 @@
 //! Distributed linear solvers by PETSc: MUMPS' factorisations and multigrid with rigid-body modes.
 //!
-//! A `Session` keeps PETSc running. A `DistributedMatrix` is the rows this rank owns; a `DistributedSolver` solves
-//! with it and keeps what it can reuse. Everything here is collective: all ranks of the communicator call it, in the
-//! same order, and all get the same verdict. Without the feature `petsc` the crate is empty.
+//! A `Session` keeps PETSc running. A `DistributedMatrix` is the rows this rank owns; a `DistributedSolver` solves with it and keeps
+//! reusable data. Everything here is collective: all ranks of the communicator call it, in the same order, and all get the same
+//! verdict. Without the feature `petsc` the crate is empty.
 #![cfg(feature = "petsc")]
 
 mod engine;

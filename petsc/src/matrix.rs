@@ -20,7 +20,7 @@ pub struct DistributedMatrix<'a> {
     pub columns: &'a [u64],
     /// Value of each entry.
     pub values: &'a [f64],
-    /// What is known of the matrix.
+    /// Symmetry of the matrix.
     pub symmetry: Symmetry,
     /// Whether some equations, on any rank, are those of multipliers.
     pub has_multipliers: bool,
@@ -102,7 +102,7 @@ pub struct RigidModes {
     pub dimension: usize,
     /// Position of the node of each owned equation.
     pub coordinates: Vec<[f64; 3]>,
-    /// Direction of each owned equation, 0 to 2; any other value for one that rigid motions do not move.
+    /// Direction of each owned equation, 0 to 2; any other value for one that rigid-body modes do not move.
     pub components: Vec<u8>,
 }
 

@@ -1,4 +1,4 @@
-//! PETSc itself, running as long as somebody needs it, and the processes it runs on.
+//! PETSc itself, running as long as somebody needs it, and the ranks it runs on.
 
 use std::ffi::{CStr, c_int, c_void};
 
@@ -23,7 +23,7 @@ impl Session {
         Ok(Self(()))
     }
 
-    /// All processes that were started together.
+    /// All ranks that were started together.
     pub fn world(&self) -> Communicator {
         // SAFETY: the pointer is to a static of PETSc, which is running.
         Communicator { raw: unsafe { ffi::zp_world() } }
@@ -59,7 +59,7 @@ impl Communicator {
         self.raw
     }
 
-    /// Number of this process, from 0, and number of processes.
+    /// Number of this rank, from 0, and number of ranks.
     pub fn rank_and_size(self) -> (usize, usize) {
         let (mut rank, mut size): (c_int, c_int) = (0, 1);
         // SAFETY: the communicator is valid, the results are written to locals.
@@ -72,7 +72,7 @@ impl Communicator {
         self.largest(i64::from(!own)) == 0
     }
 
-    /// The largest of what the ranks give. Collective.
+    /// The largest number of the ranks. Collective.
     pub(crate) fn largest(self, own: i64) -> i64 {
         let mut largest = own;
         // SAFETY: as above; all ranks take part, as the caller promises.

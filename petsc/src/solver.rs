@@ -1,4 +1,4 @@
-//! Solves distributed systems, keeps what can be reused, and judges every answer by its true residual.
+//! Solves distributed systems, keeps reusable data, and judges every solution by its true residual.
 
 use std::ffi::{CStr, CString, c_int};
 
@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-13;
 /// `‖A‖ ‖x‖ / ‖b‖` from which an answer that misses its equations shows a free motion.
 const FREE: f64 = 1e13;
 
-/// What a user chooses of the distributed solver.
+/// Settings of the distributed solver.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PetscSettings {
     /// The engine; `None` follows the rule of [`PetscEngine::choose`].
@@ -83,9 +83,8 @@ impl DistributedSolver {
     /// come, and the report says so.
     ///
     /// # Errors
-    /// The same on all ranks: [`SolveError::Singular`] with equations counted over all ranks,
-    /// [`SolveError::NotConverged`] when the residual stays too large, [`SolveError::Failed`] for input that does not
-    /// fit or is not finite, and for what PETSc reports.
+    /// The same on all ranks: [`SolveError::Singular`] with equations counted over all ranks, [`SolveError::NotConverged`] when the
+    /// residual stays too large, [`SolveError::Failed`] for input that does not fit or is not finite, and for errors of PETSc.
     pub fn solve(
         &mut self,
         matrix: &DistributedMatrix<'_>,
@@ -328,7 +327,7 @@ impl DistributedSolver {
         }
     }
 
-    /// What MUMPS or GAMG could not do.
+    /// Error of MUMPS or GAMG in the setup.
     fn failed_setup(&self, engine: PetscEngine, raw: &RawReport) -> SolveError {
         let detail = raw.factor_detail;
         match raw.factor_error {

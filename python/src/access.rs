@@ -13,7 +13,7 @@ use crate::buffer::Buffer;
 use crate::line::Lent;
 use crate::session::Session;
 
-/// What a value is in Python.
+/// A value as Python sees it.
 #[derive(FromPyObject, IntoPyObject)]
 pub(crate) enum Number {
     One(f64),

@@ -10,7 +10,7 @@ pub(crate) struct Buffer {
     _owner: Box<dyn Send + Sync>,
     /// Where they lie.
     address: usize,
-    /// What they are, as NumPy says it.
+    /// Type of the numbers, in NumPy's notation.
     kind: &'static str,
     shape: Vec<usize>,
 }
@@ -39,7 +39,7 @@ impl Buffer {
 
 #[pymethods]
 impl Buffer {
-    /// What NumPy asks for.
+    /// The interface by which NumPy reads the buffer.
     #[getter]
     fn __array_interface__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let order = if cfg!(target_endian = "little") { '<' } else { '>' };

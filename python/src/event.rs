@@ -1,4 +1,4 @@
-//! What Python hears of a run.
+//! Events of a run that Python receives.
 
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
@@ -13,7 +13,7 @@ use crate::words;
 pub(crate) enum Event {
     /// A point of the loop; waits.
     At(Point),
-    /// What is done there is done; waits.
+    /// The work at this point of the loop is done; waits.
     Acted(Point),
     /// An entry of the deck's lists of processes, as JSON, and whether the registry knows it; waits.
     Make(String, bool),

@@ -10,15 +10,15 @@ use zelus::{Error, Result};
 use crate::event::Event;
 use crate::residual::Description;
 
-/// What Python answers when it is asked.
+/// Answers of Python to a question of the run.
 pub(crate) enum Answer {
     /// Go on.
     Go,
-    /// Do what is done at this point, and ask again.
+    /// Do the work at this point, and ask again.
     Act,
     /// End the run, for this reason.
     Fail(String),
-    /// There is a process of that number, and what its residual is of where it has one; `None` leaves it to the registry.
+    /// There is a process of that number, and the description of its residual where it has one; `None` leaves it to the registry.
     Process(Option<(usize, Option<Description>)>),
     /// Residual and tangent.
     Numbers(Vec<f64>, Vec<f64>),
@@ -53,7 +53,7 @@ impl Lent {
         self.writable.map(|model| unsafe { &mut *model })
     }
 
-    /// The model, to change, and what computes on it.
+    /// The model, to change, and the system that computes on it.
     pub(crate) fn both(&mut self) -> Option<(&mut Model, Option<&System>)> {
         // SAFETY: as above; they are apart.
         self.writable.map(|model| unsafe { (&mut *model, self.system.map(|system| &*system)) })
@@ -73,7 +73,7 @@ impl Lent {
 /// Where the lent model lies; empty while the run computes.
 pub(crate) type Shelf = Arc<Mutex<Option<Lent>>>;
 
-/// What lies on the shelf, also where a thread that held it has panicked.
+/// The lent model, also where a thread that held it has panicked.
 pub(crate) fn shelf(shelf: &Shelf) -> MutexGuard<'_, Option<Lent>> {
     shelf.lock().unwrap_or_else(PoisonError::into_inner)
 }

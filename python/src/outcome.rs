@@ -1,4 +1,4 @@
-//! What a run holds at its end, as arrays that take over its buffers.
+//! Results of a run at its end, as arrays that take over its buffers.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use zelus::core::model::{Fields, ModelPart, SubPart};
 
 use crate::buffer::Buffer;
 
-/// Mesh, parts and fields of a part; `computed` is what elements know beside them.
+/// Mesh, parts and fields of a part; `computed` has the results of elements beside them.
 pub(crate) fn outcome<'py>(py: Python<'py>, part: ModelPart, computed: Dataset) -> PyResult<Bound<'py, PyDict>> {
     let out = PyDict::new(py);
     out.set_item("name", &part.name)?;

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict};
 use serde_json::{Map, Number, Value};
 
-/// What dictionaries, lists, texts, numbers, truths and `None` are in JSON.
+/// JSON value of dictionaries, lists, strings, numbers, booleans and `None`.
 pub(crate) fn plain(value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if value.is_none() {
         return Ok(Value::Null);

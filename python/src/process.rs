@@ -17,7 +17,7 @@ use crate::residual::{self, Description, PythonResidual};
 pub(crate) struct PythonProcess {
     pub(crate) number: usize,
     pub(crate) line: Arc<Line>,
-    /// What its residual is of, where it has one.
+    /// Description of its residual, where it has one.
     pub(crate) residual: Option<Description>,
     /// Whether it was told that the loop begins; a run that goes on from a saved one does not tell.
     pub(crate) has_begun: bool,
@@ -62,7 +62,7 @@ impl Process for PythonProcess {
     }
 
     fn is_output_step(&mut self, model: &Model) -> bool {
-        // what fails here fails again in the next call
+        // an error here occurs again in the next call
         matches!(self.line.ask_of(Event::Call(self.number, "IsOutputStep"), model), Ok(Answer::Truth(true)))
     }
 

@@ -17,7 +17,7 @@ use zelus::core::registry::Entry;
 use crate::event::Event;
 use crate::line::{Answer, Line};
 
-/// What Python says of it.
+/// Description that Python gives of the residual.
 #[derive(Debug, Clone, Deserialize)]
 pub(crate) struct Description {
     /// The part whose entities it is of.
@@ -36,7 +36,7 @@ pub(crate) struct PythonResidual {
 }
 
 impl PythonResidual {
-    /// The blocks over the entities of a part; Python hears of each, with ids and nodes.
+    /// The blocks over the entities of a part; Python receives each, with ids and nodes.
     pub(crate) fn new(number: usize, line: &Arc<Line>, own: &Description, model: &mut Model) -> Result<Self> {
         let part = model.root(&own.part)?;
         let unknowns: Vec<_> = own.unknowns.iter().map(|name| scalar(name)).collect::<Result<_, _>>()?;
@@ -149,7 +149,7 @@ struct Block {
     cache: Mutex<Option<Evaluated>>,
 }
 
-/// What the function gave last.
+/// Last values of the function.
 struct Evaluated {
     values: Vec<f64>,
     time: f64,

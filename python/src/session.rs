@@ -19,7 +19,7 @@ use crate::plain::plain;
 use crate::words;
 use crate::worker::{Asking, Command, Last, work};
 
-/// A run in a thread of its own. It computes after a command or an answer; [`Session::wait`] tells what it says. While it waits the
+/// A run in a thread of its own. It computes after a command or an answer; [`Session::wait`] returns its events. While it waits the
 /// model can be read and written.
 #[pyclass(frozen, module = "zelus._zelus")]
 pub(crate) struct Session {
@@ -84,8 +84,8 @@ impl Session {
         sent.and_then(Result::ok).ok_or_else(over)
     }
 
-    /// Answers what the run asked: `None` to go on, "act", the number of a process with what its residual is of as JSON, yes or no,
-    /// or the bytes of residual and tangent; `error` ends the run.
+    /// Answers a question of the run: `None` to continue, "act", the number of a process with the description of its residual as JSON,
+    /// yes or no, or the bytes of residual and tangent; `error` ends the run.
     #[pyo3(signature = (what=None, process=None, residual=None, truth=None, numbers=None, error=None))]
     fn answer(
         &self,
@@ -155,7 +155,7 @@ fn over() -> PyErr {
 }
 
 impl Session {
-    /// What `work` makes of the model that is lent now.
+    /// Result of `work` on the model that is lent now.
     pub(crate) fn with<T>(&self, work: impl FnOnce(&mut Lent) -> PyResult<T>) -> PyResult<T> {
         let mut lent = shelf(&self.shelf);
         let lent = lent.as_mut().ok_or_else(|| {

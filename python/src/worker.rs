@@ -1,4 +1,4 @@
-//! The thread of a run: does what Python commands, and asks it on the way.
+//! The thread of a run: executes the commands of Python, and asks it on the way.
 
 use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex};
@@ -19,7 +19,7 @@ use crate::line::{Answer, Line};
 use crate::process::PythonProcess;
 use crate::words;
 
-/// What Python commands.
+/// Commands from Python.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Command {
     Prepare,
@@ -27,7 +27,7 @@ pub(crate) enum Command {
     Finish,
 }
 
-/// What the elements know at the end of a run, which is gone with it.
+/// Data of the elements at the end of a run, which end with it.
 pub(crate) type Last = Arc<Mutex<Option<Dataset>>>;
 
 /// Runs commands until there are none; gives the simulation back.
@@ -83,7 +83,7 @@ impl Monitor for Watch<'_> {
 /// Asks Python at the points of the loop, and for processes.
 pub(crate) struct Asking {
     pub(crate) line: Arc<Line>,
-    /// Whether Python decides what is done at the points; else all is done as the deck says.
+    /// Whether Python decides the work at the points; else all is done by the deck.
     pub(crate) attended: bool,
     pub(crate) last: Last,
 }

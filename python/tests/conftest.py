@@ -1,4 +1,4 @@
-"""What the tests share: decks of the repository, copied so that runs write beside the copies."""
+"""Helpers of the tests: decks of the repository, copied so that runs write beside the copies."""
 
 import os
 import pathlib

@@ -12,7 +12,7 @@ from .result import Result
 
 
 class Solver:
-    """What solves the steps of an AnalysisStage."""
+    """Solver of the steps of an AnalysisStage."""
 
     def __init__(self, stage):
         self._stage = stage
@@ -32,17 +32,17 @@ class Solver:
         return self._stage._advance()
 
     def InitializeSolutionStep(self):
-        """What the solver does then is done with the solution of the step."""
+        """No action: the solution of the step includes it."""
 
     def Predict(self):
-        """What the solver does then is done with the solution of the step."""
+        """No action: the solution of the step includes it."""
 
     def SolveSolutionStep(self):
         """Solves the step; where it is cut, what is left of it follows as steps of their own. Raises where it does not converge."""
         return self._stage._solve()
 
     def FinalizeSolutionStep(self):
-        """What the solver does then is done with the solution of the step."""
+        """No action: the solution of the step includes it."""
 
     def Check(self):
         """A deck is checked as it is set up."""
@@ -57,7 +57,7 @@ class AnalysisStage:
     """Runs a deck as Kratos' class of that name does, with the same hooks in the same order.
 
     model: a Model. project_parameters: the deck as Parameters; its paths begin in `folder`, by default the present one.
-    What a hook that is overridden does not pass on to `super()` is not done.
+    An overridden hook must call `super()`, else the work of the stage is not done.
     """
 
     def __init__(self, model, project_parameters, *, folder=".", threads=None, like=None, progress=None):
@@ -208,7 +208,7 @@ class AnalysisStage:
         return self._GetSolver().GetComputingModelPart()
 
     def GetFinalData(self):
-        """What a stage hands on by name: nothing of its own."""
+        """Data that a stage hands on by name: nothing of its own."""
         return {}
 
     def _GetSolver(self):
@@ -265,7 +265,7 @@ class AnalysisStage:
                 raise
 
     def _stopping(self, move):
-        """What `move` comes to; the stage is over where it raises."""
+        """Result of `move`; the stage is over where it raises."""
         try:
             self._at = move()
         except BaseException:

@@ -53,7 +53,7 @@ def _read(value):
 
 
 class _Item:
-    """What nodes, elements and conditions have in common."""
+    """Common interface of nodes, elements and conditions."""
 
     def __init__(self, part, kind, at, id):
         self._part, self._kind, self._at = part, kind, at
@@ -181,7 +181,7 @@ class _Geometry(list):
 
 
 class _Entity(_Item):
-    """What elements and conditions have in common."""
+    """Common interface of elements and conditions."""
 
     def _facts(self):
         return self._session.entity(self._part._root, self._kind, self._at)
@@ -274,7 +274,7 @@ class PropertiesContainer:
         return Properties(self._part, id)
 
 
-# What the run counts itself.
+# Numbers that the run counts itself.
 _COUNTED = ("TIME", "DELTA_TIME", "STEP", "NL_ITERATION_NUMBER", "DOMAIN_SIZE")
 _WHOLE = ("STEP", "NL_ITERATION_NUMBER", "DOMAIN_SIZE")
 

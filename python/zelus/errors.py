@@ -1,4 +1,4 @@
-"""What stops a run, and what it warns of."""
+"""Errors that stop a run, and its warnings."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class ZelusError(Exception):
 
     @property
     def remedy(self) -> str | None:
-        """What to do about the first problem."""
+        """The remedy of the first problem."""
         first = self._first()
         return first.remedy if first else None
 
@@ -77,7 +77,7 @@ class SystemFailure(ZelusError):
 
 
 class ZelusWarning(UserWarning):
-    """What a run warns of; the text begins with its code."""
+    """Warning of a run; the text begins with its code."""
 
 
 _KINDS = {"input": InputError, "not_converged": NotConvergedError, "system": SystemFailure}

@@ -103,7 +103,7 @@ class _Module(types.ModuleType):
 
 
 def _top(module):
-    """What KratosMultiphysics itself has."""
+    """Names of KratosMultiphysics itself."""
     names = """Array3 ApplyFunctionToNodesUtility GenericFunctionUtility IntervalUtility KratosGlobals Logger Matrix VariableUtils
         Vector""".split()
     members = {name: getattr(kratos_utilities, name) for name in names} | kratos_utilities.VARIABLE_CLASSES
@@ -124,7 +124,7 @@ def _top(module):
 
 
 def _tests(module):
-    """What KratosUnittest has."""
+    """Names of KratosUnittest."""
     module.__dict__.update(
         {
             "TestCase": _TestCase,
@@ -139,7 +139,7 @@ def _tests(module):
 
 
 def _process(module, name):
-    """What the module of a process of the program has: its class by Kratos' name, and Factory."""
+    """Names in the module of a process of the program: its class by Kratos' name, and Factory."""
 
     def begin(self, own_model, settings):
         builtin.BuiltinProcess.__init__(self, own_model, name, settings)

@@ -1,4 +1,4 @@
-"""What programs and processes for Kratos use beside the model: numbers, lines, loops over nodes, functions, intervals."""
+"""Utilities of Kratos for programs and processes: numbers, lines, loops over nodes, functions, intervals."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Logger:
 
     @staticmethod
     def GetDefaultOutput():
-        """What takes a severity and does not heed it."""
+        """Output object that accepts a severity and ignores it."""
         return types.SimpleNamespace(SetSeverity=lambda _: None)
 
 

@@ -305,7 +305,7 @@ class ModelPart:
         return _Communicator()
 
     def IsDistributed(self):
-        """Whether several processes share it."""
+        """Whether several ranks share it."""
         return False
 
     def array(self, variable, step=0, *, historical=True):

@@ -77,7 +77,7 @@ def _of_class(made):
 
 
 def process_of(model, folder):
-    """What makes the processes of a deck in `folder` that are Python's; gives `None` for those of the program."""
+    """Factory of the Python processes of a deck in `folder`; returns `None` for those of the program."""
     folder = Path(folder).resolve()
 
     def make(entry, known):

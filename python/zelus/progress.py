@@ -7,7 +7,7 @@ from .result import worst_ratio
 
 
 def _notebook():
-    """What shows lines in a notebook; `None` elsewhere."""
+    """Display of lines in a notebook; `None` elsewhere."""
     shell = sys.modules.get("IPython")
     kernel = shell and shell.get_ipython() and hasattr(shell.get_ipython(), "kernel")
     if not kernel:

@@ -10,7 +10,7 @@ use super::example::example;
 use super::kratos_names::{done_here, without_shape};
 use super::say::say;
 
-/// What the line of an example begins with in a file of defaults.
+/// Key of the line of an example in a file of defaults.
 const EXAMPLE: &str = "\"$example\"";
 
 /// Prints the names of one kind, or of all.
@@ -99,7 +99,7 @@ pub(super) fn describe(name: &str) -> Result<()> {
     Err(Diagnostic::error("unknown-name", format!("nothing is registered as {name:?}")).remedy(remedy).into())
 }
 
-/// Says where the work of a known name is done, its shapes, or what to use instead; whether there was anything.
+/// Prints where the work of a known name is done, its shapes, or its replacement; returns whether there was anything.
 fn answered(name: &str) -> Result<bool> {
     let done = done_here(name)?;
     if let Some(sentence) = &done {

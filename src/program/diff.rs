@@ -16,7 +16,7 @@ use super::say::say;
 pub(super) struct Arguments {
     /// A folder with results (.pvd, .vtu, .json of json_output_process), one such file, or the report of a run.
     first: PathBuf,
-    /// What to compare it with.
+    /// Results to compare with the first.
     second: PathBuf,
     /// Difference up to which numbers are equal, by the largest number of the field over all steps.
     #[arg(long, default_value_t = 0.0)]
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::from(u8::from(comparison.is_different)))
 }
 
-/// What is found on the way.
+/// Findings of a comparison.
 #[derive(Debug, Default)]
 struct Comparison {
     tolerance: f64,

@@ -17,7 +17,7 @@ const PAGE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/style.css");
 const SCRIPTS: [&str; 3] =
     [include_str!("page/charts.js"), include_str!("page/sections.js"), include_str!("page/view.js")];
-/// What every page begins with, by which one is known.
+/// Start of every page, by which one is recognised.
 const MARK: &str = "<!doctype html>\n<!-- zelus report -->";
 
 /// The command line of `zelus report`.

@@ -10,7 +10,7 @@ use zelus_core::{Error, Result};
 
 use super::report::check_output;
 
-/// What every log begins with.
+/// Start of every log, by which one is recognised.
 const MARK: &str = "zelus ";
 
 /// A log that grows line by line.
@@ -36,7 +36,7 @@ impl Log {
         Ok(log)
     }
 
-    /// Adds what is said now.
+    /// Adds a line of output.
     pub(super) fn line(&mut self, text: &str) {
         self.raw(&format!("{:10.3} {text}", self.begun.elapsed().as_secs_f64()));
     }

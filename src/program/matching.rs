@@ -1,4 +1,4 @@
-//! Which point of one picture is which of another.
+//! Matching of the points of two pictures.
 
 use std::collections::HashMap;
 

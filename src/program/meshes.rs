@@ -99,7 +99,7 @@ fn read(arguments: &Convert) -> Result<(MdpaDocument, Vec<Diagnostic>)> {
     (source.build)(from, &source.settings(&Node::new(Value::Object(given), &place))?)
 }
 
-/// What a document holds, in lines.
+/// Entities of a document, as a count in words.
 pub(super) fn counts(document: &MdpaDocument) -> String {
     let mut out = format!("{} nodes", document.nodes.ids.len());
     for block in document.elements.iter().chain(&document.conditions) {

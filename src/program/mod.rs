@@ -63,13 +63,13 @@ enum Command {
     Check {
         /// The deck, e.g. ProjectParameters.json.
         file: PathBuf,
-        /// Take the defaults of this program where the deck names nothing, e.g. kratos.
+        /// Use the defaults of this program where the deck gives none, e.g. kratos.
         #[arg(long, value_name = "PROGRAM")]
         like: Option<String>,
         /// Take a value in place of the deck's, e.g. solver_settings.max_iteration=20; may be given several times.
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
-        /// How problems are told: text, or one JSON object with severity, code, place, fact and remedy of each.
+        /// Format of problems: text, or one JSON object with severity, code, place, fact and remedy of each.
         #[arg(long, value_enum, default_value_t = Format::Text)]
         format: Format,
     },
@@ -79,7 +79,7 @@ enum Command {
     Convert(meshes::Convert),
     /// Write a commented deck to start from: parts, materials, supports and pairs in contact, of a mesh.
     New(starter::Arguments),
-    /// Cut the mesh of a deck for several ranks and say what each has, whom it meets and what it sends.
+    /// Cut the mesh of a deck for several ranks, and print the share, neighbours and traffic of each.
     Partition(partition::Arguments),
     /// Compare two result sets by node and field; exit code 0 where they are equal, 1 where not.
     Diff(diff::Arguments),
@@ -92,7 +92,7 @@ enum Command {
     },
     /// Print the JSON Schema of decks or of materials, by which editors complete and check them.
     Schema {
-        /// What of.
+        /// Kind of file that the schema describes.
         #[arg(value_enum, default_value_t = schema::Of::Deck)]
         of: schema::Of,
     },
@@ -103,7 +103,7 @@ enum Command {
     },
     /// Print the manual page: zelus manual > zelus.1.
     Manual,
-    /// Say what a registered name is, its settings with defaults, and its source.
+    /// Describe a registered name: settings with defaults, and source.
     Describe {
         /// The name, as a deck would write it.
         name: String,
@@ -141,7 +141,7 @@ enum Format {
     Json,
 }
 
-/// Does what is asked; `ran` says afterwards whether a step was made.
+/// Executes the command; `ran` says afterwards whether a step was made.
 fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
     match command {
         Command::Run(arguments) => run::run(&arguments, ranks, ran),
@@ -199,7 +199,7 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
     }
 }
 
-/// Keys and values of `--set`: what is no JSON is a word.
+/// Keys and values of `--set`: a value that is no JSON is a word.
 fn changes(given: &[String]) -> Result<Vec<(String, serde_json::Value)>> {
     let of = |text: &String| {
         let (key, value) = text.split_once('=').ok_or_else(|| {

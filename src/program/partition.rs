@@ -1,4 +1,4 @@
-//! `zelus partition`: the mesh of a deck cut for several ranks, and what that costs.
+//! `zelus partition`: the mesh of a deck cut for several ranks, and its costs.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     Ok(())
 }
 
-/// A column of the table: its head and what it shows of a rank.
+/// A column of the table: its head and its number for a rank.
 type Shown = (&'static str, fn(&RankCounts, Traffic) -> usize);
 
 const COLUMNS: [Shown; 11] = [

@@ -7,7 +7,7 @@ use zelus_core::strategies::Plan;
 /// Shares of a stage below which no time is guessed from them.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// Step, share of the stage that is done, and what is under way.
+/// Step, share of the stage that is done, and the present phase.
 #[derive(Debug, Default)]
 pub(super) struct Progress {
     plan: Option<Plan>,
@@ -44,7 +44,7 @@ impl Progress {
         self.phase = phase;
     }
 
-    /// What is done of the stage, from 0 to 1.
+    /// Completed share of the stage, from 0 to 1.
     fn share(&self) -> f64 {
         let Some(plan) = self.plan else { return 0.0 };
         ((self.reached - plan.start) / (plan.end - plan.start)).clamp(0.0, 1.0)

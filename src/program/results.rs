@@ -22,7 +22,7 @@ pub(super) struct Frame {
 #[derive(Debug)]
 enum Source {
     Picture(PathBuf),
-    /// What a file of histories says of one time.
+    /// Values at one time in a file of histories.
     Values(Box<Dataset>),
 }
 
@@ -130,7 +130,7 @@ fn outputs_of(path: &Path) -> Option<Vec<PathBuf>> {
     Some(report.get("outputs")?.as_array()?.iter().filter_map(Value::as_str).map(PathBuf::from).collect())
 }
 
-/// What json_output_process has written: numbers by node and variable, one a time.
+/// Histories that json_output_process has written: numbers by node and variable, one a time.
 fn histories(path: &Path) -> Result<Series> {
     let wrong = || without_results(path, "it is no report, and holds no histories of nodes");
     let root = json_of(path).ok_or_else(wrong)?;

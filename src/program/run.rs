@@ -20,7 +20,7 @@ use super::{changes, explain, sweep};
 /// Runs; `ran` says afterwards whether a step was made.
 ///
 /// # Errors
-/// What the deck, the system or a step that does not converge ends the run with.
+/// Faults of the deck or the system, and a step that does not converge.
 pub(super) fn run(arguments: &RunArguments, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
     let RunArguments { file, threads, like, set, resume, quiet, verbose, .. } = arguments;
     refuse_script(file)?;
@@ -71,12 +71,12 @@ pub(super) fn run(arguments: &RunArguments, ranks: &Ranks, ran: &mut bool) -> Re
     if let Ended::Stopped { saved, time } = &ended {
         let saved = saved.display();
         let again = words(arguments);
-        say(&format!("stopped at time {time}, and saved in {saved}: `zelus run {again} --resume` goes on"));
+        say(&format!("stopped at time {time}, and saved in {saved}: `zelus run {again} --resume` continues it"));
     }
     Ok(ended.code())
 }
 
-/// The deck and what of the command line changes its results or their place.
+/// The deck and the arguments of the command line that change its results or their place.
 fn words(arguments: &RunArguments) -> String {
     let mut words = vec![arguments.file.display().to_string()];
     words.extend(arguments.like.iter().map(|like| format!("--like {like}")));
@@ -85,7 +85,7 @@ fn words(arguments: &RunArguments) -> String {
     words.join(" ")
 }
 
-/// A program in Python is no deck: says what runs it.
+/// A program in Python is no deck: names the program that runs it.
 fn refuse_script(file: &Path) -> Result<()> {
     if file.extension().is_none_or(|ending| ending != "py") {
         return Ok(());
@@ -118,8 +118,8 @@ impl Ended {
 fn drive(simulation: &mut Simulation, monitor: &mut dyn Monitor, resume: bool, stop: &Stop) -> Result<Ended> {
     if resume {
         match simulation.resume(monitor)? {
-            Some(saved) => monitor.note(&format!("goes on from {}", saved.display())),
-            None => monitor.note("no run of this deck was saved: it is run from its start"),
+            Some(saved) => monitor.note(&format!("restart from {}", saved.display())),
+            None => monitor.note("no saved run of this deck: the run starts from the beginning"),
         }
     }
     while simulation.step(monitor)? {

@@ -13,7 +13,7 @@ pub(super) struct RunArguments {
     /// Write the report of the run (sizes, iterations, contact state, timings, warnings) to this JSON file.
     #[arg(long, conflicts_with = "sweep")]
     pub report: Option<PathBuf>,
-    /// Take the defaults of this program where the deck names nothing, e.g. kratos.
+    /// Use the defaults of this program where the deck gives none, e.g. kratos.
     #[arg(long, value_name = "PROGRAM")]
     pub like: Option<String>,
     /// Take a value in place of the deck's, e.g. solver_settings.max_iteration=20; may be given several times.
@@ -28,17 +28,17 @@ pub(super) struct RunArguments {
     /// Rows of the sweep that run at a time, which share the cores; as many as there are cores when not given.
     #[arg(short, long, value_name = "N", requires = "sweep")]
     pub jobs: Option<usize>,
-    /// Go on from the latest saved run of the deck, with the bits of a run that was not stopped; from the start where
-    /// none was saved. Of a sweep, make the rows that are not done.
+    /// Restart from the latest saved run of the deck, bitwise identical to a run that was not stopped; from the beginning
+    /// where none was saved. For a sweep, run the rows that are not done.
     #[arg(long)]
     pub resume: bool,
-    /// Say nothing but warnings and errors.
+    /// Print warnings and errors only.
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Also say who solved how, which nodes changed their state, and where the time went.
+    /// Also print the solver of each system, nodes that change their state, and the time of each phase.
     #[arg(short, long, conflicts_with = "sweep")]
     pub verbose: bool,
-    /// Write all that --verbose says, with the seconds since the start, to this file as well.
+    /// Write all lines of --verbose, with the seconds since the start, to this file as well.
     #[arg(long, value_name = "FILE", conflicts_with = "sweep")]
     pub log: Option<PathBuf>,
 }

@@ -9,7 +9,7 @@ use zelus_core::model::{VariableKind, variables};
 use zelus_core::parameters::{self, Defaults, Node};
 use zelus_core::registry::{self, Entry};
 
-/// What a schema is of.
+/// Kind of file that a schema describes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Of {
     /// ProjectParameters.json.
@@ -188,7 +188,7 @@ fn object(entry: &Entry) -> Result<Value> {
     Ok(settings)
 }
 
-/// What may stand in place of a default.
+/// Schema of the values that may replace a default.
 fn of_node(node: &Node, path: &str, defaults: &Defaults) -> Value {
     let key = path.rsplit('.').next().unwrap_or(path);
     let mut schema = match &node.value {
@@ -231,20 +231,20 @@ fn of_node(node: &Node, path: &str, defaults: &Defaults) -> Value {
     schema
 }
 
-/// For each entry of a kind with settings: where `key` names it, what then holds.
+/// For each entry of a kind with settings: the schema that holds where `key` names it.
 fn choices(key: &str, kind: &str, then: impl Fn(Value) -> Value) -> Vec<Value> {
     let with_settings = entries(kind).into_iter().filter(|entry| !entry.defaults.is_empty());
     let choice = |entry: &'static Entry| json!({ "if": is_called(key, entry), "then": then(reference(kind, entry)) });
     with_settings.map(choice).collect()
 }
 
-/// That `key` names the entry, with or without words before a dot.
+/// Condition: `key` names the entry, with or without words before a dot.
 fn is_called(key: &str, entry: &Entry) -> Value {
     let names = entry.names().collect::<Vec<_>>().join("|");
     json!({ "properties": { key: { "pattern": format!("^(.*\\.)?({names})$") } }, "required": [key] })
 }
 
-/// An item of a list of processes or modelers: a name, and the settings of what it names.
+/// An item of a list of processes or modelers: a name, and the settings of that object.
 fn item(key: &str, kind: &str, settings: &str) -> Value {
     let names = all_names(kind);
     let mut properties = json!({ settings: { "type": "object" } });

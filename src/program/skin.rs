@@ -1,4 +1,4 @@
-//! What of a picture is seen from outside, as numbers of a page.
+//! Outer surface of a picture, as numbers of a page.
 
 use std::collections::HashMap;
 

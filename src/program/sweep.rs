@@ -16,7 +16,7 @@ use zelus_core::{Error, Result};
 
 use super::report::{check_output, made_folder};
 use super::run_arguments::RunArguments;
-use super::say::say;
+use super::say::{plural, say};
 use super::stop::Stop;
 use super::table::{MARK, Table};
 
@@ -25,10 +25,10 @@ const REPORT: &str = "report.json";
 const LOG: &str = "log.txt";
 const ROW: &str = "row.json";
 
-/// What of the largest results the table on the terminal shows.
+/// Largest results that the table on the terminal shows.
 const LOOKED_AT: [&str; 3] = ["DISPLACEMENT", "CONTACT_PRESSURE", "TEMPERATURE"];
 
-/// The study: what is run, where.
+/// The study: its arguments, table and folder.
 struct Sweep<'a> {
     arguments: &'a RunArguments,
     table: Table,
@@ -43,7 +43,7 @@ struct Ended {
     row: usize,
     code: u8,
     report: Option<RunReport>,
-    /// What the run said where it left no report.
+    /// Output of the run where it left no report.
     said: String,
     /// Whether it was done before.
     kept: bool,
@@ -52,7 +52,7 @@ struct Ended {
 /// Runs all rows; the exit code is the largest of theirs.
 ///
 /// # Errors
-/// A table that cannot be read, or folders that cannot be made; what a row ends with stands in its row of the results.
+/// A table that cannot be read, or folders that cannot be made; the outcome of a row stands in its row of the results.
 pub(super) fn run(arguments: &RunArguments, table: &Path, ranks: &Ranks) -> Result<ExitCode> {
     if ranks.size() > 1 {
         let problem = Diagnostic::error("sweep", "a sweep shares out whole runs, and was started on several ranks");
@@ -74,7 +74,12 @@ pub(super) fn run(arguments: &RunArguments, table: &Path, ranks: &Ranks) -> Resu
             say(text);
         }
     };
-    tell(&format!("{rows} rows, {jobs} at a time with {} thread{} each", sweep.threads, plural(sweep.threads)));
+    tell(&format!(
+        "{rows} row{}, {jobs} at a time with {} thread{} each",
+        plural(rows),
+        sweep.threads,
+        plural(sweep.threads)
+    ));
     let (next, done) = (Mutex::new(0..rows), Mutex::new(Vec::<Ended>::new()));
     let work = || -> Result<()> {
         loop {
@@ -126,14 +131,14 @@ impl Sweep<'_> {
         self.folder.join(format!("row_{}", row + 1))
     }
 
-    /// What `--set` is given of a row; an empty cell leaves what the deck says.
+    /// The arguments of `--set` for a row; an empty cell keeps the value of the deck.
     fn changes(&self, row: usize) -> Vec<String> {
         let cells = self.table.heads.iter().zip(&self.table.rows[row]).filter(|(_, cell)| !cell.is_empty());
         let own = cells.map(|(head, cell)| format!("{head}={cell}"));
         self.arguments.set.iter().cloned().chain(own).collect()
     }
 
-    /// What the results of a row depend on, beside its files.
+    /// Inputs on which the results of a row depend, beside its files.
     fn identity(&self, row: usize) -> Value {
         let RunArguments { file, like, .. } = self.arguments;
         json!({ "version": env!("CARGO_PKG_VERSION"), "deck": file, "like": like, "set": self.changes(row) })
@@ -150,7 +155,7 @@ impl Sweep<'_> {
         (own == self.identity(row) && report.exit_code == 0 && as_it_was).then_some(report)
     }
 
-    /// Runs a row in a process of its own: what ends one does not end the others.
+    /// Runs a row in a process of its own: the end of one does not end the others.
     fn row(&self, row: usize) -> Result<Ended> {
         let RunArguments { file, like, resume, .. } = self.arguments;
         if *resume && let Some(report) = self.done_before(row) {
@@ -187,11 +192,15 @@ impl Sweep<'_> {
     fn line(&self, ended: &Ended) -> String {
         let head = format!("row {} of {}", ended.row + 1, self.table.rows.len());
         match (&ended.report, ended.kept) {
-            (Some(report), true) => format!("{head}: done before, {} steps", report.converged_steps),
+            (Some(report), true) => {
+                format!("{head}: done before, {} step{}", report.converged_steps, plural(report.converged_steps))
+            }
             (Some(report), _) if ended.code == 0 => format!(
-                "{head}: {} steps converged in {} iterations, {:.2} s",
+                "{head}: {} step{} converged in {} iteration{}, {:.2} s",
                 report.converged_steps,
+                plural(report.converged_steps),
                 report.iterations,
+                plural(report.iterations),
                 seconds(report)
             ),
             _ => format!("{head}: exit code {}: {}", ended.code, ended.why()),
@@ -224,7 +233,7 @@ impl Sweep<'_> {
         table(&columns, done)
     }
 
-    /// What of the results fits on a terminal: keys by their last word, sizes of what is looked at first.
+    /// Columns that fit on a terminal: keys by their last word, the main results first.
     fn summary(&self, done: &[Ended]) -> Table {
         let short = |head: &String| {
             let words: Vec<&str> = head.split('.').collect();
@@ -270,7 +279,7 @@ impl<'a> Column<'a> {
         Self { head: head.into(), cell: Box::new(cell) }
     }
 
-    /// Of what the report says; empty where a run has left none.
+    /// Column of a number in the report; empty where a run has left none.
     fn of_report(head: impl Into<String>, cell: impl Fn(&RunReport) -> String + 'a) -> Self {
         Self::new(head, move |ended| ended.report.as_ref().map(&cell).unwrap_or_default())
     }
@@ -301,7 +310,7 @@ impl Ended {
         balance.iter().flat_map(|balance| &balance.pairs).map(|pair| (pair.name.clone(), pair.force)).collect()
     }
 
-    /// That on the slave side of one pair.
+    /// Force on the slave side of one pair.
     fn force(&self, pair: &str) -> Option<[f64; 3]> {
         self.forces().into_iter().find(|(own, _)| own == pair).map(|(_, force)| force)
     }
@@ -329,8 +338,4 @@ fn norm(force: &[f64; 3]) -> f64 {
 
 fn number(value: Option<f64>) -> String {
     value.map(|value| format!("{value:e}")).unwrap_or_default()
-}
-
-fn plural(count: usize) -> &'static str {
-    if count == 1 { "" } else { "s" }
 }

@@ -8,7 +8,7 @@ use zelus_core::diagnostics::{Diagnostic, Place};
 use zelus_core::io::replace_own_file;
 use zelus_core::{Error, Result};
 
-/// What the first line of a table of results begins with.
+/// Start of the first line of a table of results.
 pub(super) const MARK: &str = "row,exit_code,";
 
 /// Rows of cells below their heads.

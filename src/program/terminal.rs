@@ -1,4 +1,4 @@
-//! What the program says while it runs: a line a step, a table of the iterations, a summary.
+//! Output of the program while it runs: a line a step, a table of the iterations, a summary.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use zelus_core::strategies::{IterationRecord, Monitor, Plan, StepRecord};
 
 use super::log::Log;
 use super::progress::Progress;
-use super::say::say;
+use super::say::{plural, say};
 use super::warnings::Warnings;
 
 /// How much is said, from little to much.
@@ -64,8 +64,7 @@ impl Terminal {
         self.bar.iter().for_each(|bar| bar.set_message(self.progress.line(self.begun.elapsed())));
     }
 
-    /// The last lines: warnings once more, where results are, and how long it took; for a run that has `failed`, what the program
-    /// is going to say of it.
+    /// The last lines: warnings once more, where results are, and how long it took; for a run that has `failed`, the error.
     pub(super) fn finish(&mut self, report: &RunReport, failed: Option<&str>) {
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();
@@ -81,13 +80,15 @@ impl Terminal {
             self.log.iter_mut().for_each(|log| log.line(failed));
         } else if report.exit_code == 0 {
             let text = format!(
-                "{} steps converged in {} iterations, {:.2} s, {} unknowns, {} thread{}",
+                "{} step{} converged in {} iteration{}, {:.2} s, {} unknowns, {} thread{}",
                 report.converged_steps,
+                plural(report.converged_steps),
                 report.iterations,
+                plural(report.iterations),
                 self.begun.elapsed().as_secs_f64(),
                 report.sizes.unknowns,
                 report.threads,
-                if report.threads == 1 { "" } else { "s" }
+                plural(report.threads)
             );
             self.line(Level::Usual, &text);
         }
@@ -133,9 +134,16 @@ impl Monitor for Terminal {
         let condition = record.condition_number.map(|c| format!("   condition number {c:.3e}")).unwrap_or_default();
         self.line(Level::Usual, &format!("  {:>3} {}  {changes:>6}{condition}", record.iteration, cells.join("")));
         let IterationRecord { engine, linear_iterations, linear_residual, .. } = record;
-        let solved = format!("      {engine}: {linear_iterations} iterations, relative residual {linear_residual:.1e}");
+        let solved = format!(
+            "      {engine}: {linear_iterations} iteration{}, relative residual {linear_residual:.1e}",
+            plural(*linear_iterations)
+        );
         let nodes: Vec<String> = record.changed_nodes.iter().map(ToString::to_string).collect();
-        let changed = if nodes.is_empty() { String::new() } else { format!("; changed: nodes {}", nodes.join(" ")) };
+        let changed = if nodes.is_empty() {
+            String::new()
+        } else {
+            format!("; changed: node{} {}", plural(nodes.len()), nodes.join(" "))
+        };
         self.line(Level::Verbose, &format!("{solved}{changed}"));
     }
 
@@ -149,8 +157,8 @@ impl Monitor for Terminal {
             record.interactions.iter().map(|(name, value)| format!("{name} {}", short(*value))).collect();
         let state = match (record.converged, record.iterations.len()) {
             (true, 0) => "done".to_owned(),
-            (true, count) => format!("converged in {count} iterations"),
-            (false, count) => format!("not converged in {count} iterations"),
+            (true, count) => format!("converged in {count} iteration{}", plural(count)),
+            (false, count) => format!("not converged in {count} iteration{}", plural(count)),
         };
         let extra = if numbers.is_empty() { String::new() } else { format!("; {}", numbers.join(", ")) };
         self.line(Level::Usual, &format!("  {state}{extra}"));

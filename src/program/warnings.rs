@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use zelus_core::diagnostics::{Diagnostic, Severity};
 
-/// Warnings by code: how many, and what the first says.
+/// Warnings by code: their number, and the text of the first.
 #[derive(Debug, Default)]
 pub(super) struct Warnings(BTreeMap<&'static str, (usize, String)>);
 

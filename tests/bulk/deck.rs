@@ -22,7 +22,7 @@ pub struct Deck<'a> {
     gauss: Vec<String>,
 }
 
-/// What a run leaves.
+/// Outcome of a run.
 pub struct Ran {
     json: Value,
     /// Report of the run.
@@ -210,7 +210,7 @@ impl<'a> Deck<'a> {
         ran
     }
 
-    /// Runs the deck; what was said of it, and what it left on disk.
+    /// Runs the deck; returns the result, and the files on disk.
     pub fn attempt(&self) -> (zelus_core::Result<()>, Ran) {
         let folder = tempfile::tempdir().expect("a scratch folder");
         let mut processes = self.processes.clone();

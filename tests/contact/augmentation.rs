@@ -1,5 +1,5 @@
-//! Contact of unlike curved meshes: it converges with default settings, quadratically, and its answer does not depend on what
-//! a deck says of penalties (ANALYTIC: the equations of a node do not contain them).
+//! Contact of unlike curved meshes: it converges with default settings, quadratically, and its solution does not depend on the
+//! penalties of a deck (ANALYTIC: the equations of a node do not contain them).
 
 use crate::support::{Results, said, zelus};
 use serde_json::{Value, json};
@@ -198,7 +198,7 @@ fn materials(space: usize) -> Value {
         "Variables": {"YOUNG_MODULUS": 1000.0, "POISSON_RATIO": 0.3, "DENSITY": 1.0, "THICKNESS": 1.0}, "Tables": {}}}]})
 }
 
-/// Displacements by component, and what the run said.
+/// Displacements by component, and the output of the run.
 fn run(mesh: &Mesh, slave: usize, friction: f64, more: &Value) -> (Vec<f64>, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).expect("a file");

@@ -1,4 +1,4 @@
-//! The balance of accepted steps: closed forms of what acts, holds and is left over, on any number of ranks.
+//! The balance of accepted steps: closed forms of loads, reactions and remainder, on any number of ranks.
 
 use crate::support;
 use std::path::Path;
@@ -124,7 +124,7 @@ fn is_same(found: &[Balance], expected: &[Balance]) -> Result<(), String> {
     ["unknowns", "pairs", "energies"].iter().try_for_each(|key| {
         let of_key = |run: &Value| run.as_array().expect("steps").iter().map(|step| step[key].clone()).collect();
         let [found, expected]: [Value; 2] = [&found, &expected].map(of_key);
-        // Where supports push against each other, sums are round-off of what they push with.
+        // Where supports push against each other, sums are round-off of their forces.
         let scale = largest(&expected).max(if *key == "unknowns" { 1e2 } else { 0.0 });
         compare(key, &found, &expected, scale)
     })
@@ -133,7 +133,7 @@ fn is_same(found: &[Balance], expected: &[Balance]) -> Result<(), String> {
 fn compare(name: &str, found: &Value, expected: &Value, scale: f64) -> Result<(), String> {
     match (found, expected) {
         (Value::Object(found), Value::Object(expected)) => {
-            // What is relative is a share of round-off.
+            // The relative remainder is a share of round-off.
             let mut keys = expected.iter().filter(|(key, _)| *key != "relative");
             keys.try_for_each(|(key, value)| compare(&format!("{name}.{key}"), &found[key], value, scale))
         }
@@ -158,7 +158,7 @@ fn largest(value: &Value) -> f64 {
     }
 }
 
-/// Supports that pull against each other alone add up to nothing, and what is left over is no more beside what each of them pulls.
+/// Supports that pull against each other alone add up to nothing, and the remainder is small beside the pull of each.
 #[test]
 fn supports_that_pull_alone_are_in_balance() {
     for case in ["elements/displacement_patch_2D4N", "elements/displacement_patch_3D8N"] {

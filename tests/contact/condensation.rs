@@ -11,7 +11,7 @@ const DIRECT: &str = "sparse_lu";
 /// Largest difference of a field from that of the direct engine, as a share of its largest value.
 const AGREE: f64 = 1e-9;
 
-/// What a run of a case left behind.
+/// Outcome of a run of a case.
 struct Run {
     code: Option<i32>,
     said: String,

@@ -46,7 +46,7 @@ fn a_block_in_a_die_is_in_uniaxial_strain() {
     check_die(3, 0.5, 1.0, FRICTIONLESS, true);
 }
 
-/// ANALYTIC: equilibrium. Without friction the floor carries what presses down and the wall what presses sideways.
+/// ANALYTIC: equilibrium. Without friction the floor carries the vertical load and the wall the horizontal one.
 #[test]
 fn floor_and_wall_share_the_load_of_a_corner() {
     for pairs in [
@@ -119,7 +119,7 @@ fn a_corner_may_be_tied_to_two_bodies() {
     close(floor, same_floor, 1e-8, "the floor");
     close(wall, same_wall, 1e-8, "the wall");
     close(floor + wall, -2.0, FOLLOWING, "both");
-    // Cells that do not match tie means: EXTERNAL, the other choice of slaves, within what the mesh tells apart.
+    // Ties of non-matching cells take means: EXTERNAL, the other choice of slaves, within the accuracy of the mesh.
     let (moved, floor, _) = run(block, 5);
     let (same, same_floor, _) = run(others, 5);
     for u in moved.iter().chain(&same) {
@@ -128,8 +128,8 @@ fn a_corner_may_be_tied_to_two_bodies() {
     close(floor, same_floor, 2e-3 * floor.abs(), "the floor");
 }
 
-/// ANALYTIC: equilibrium. What is tied to the floor and leaves the wall hangs on the floor alone; nothing is in anything, however
-/// large the load.
+/// ANALYTIC: equilibrium. A slave node that is tied to the floor and leaves the wall hangs on the floor alone; no body penetrates
+/// another, however large the load.
 #[test]
 fn a_tie_and_an_open_pair_meet_at_a_corner() {
     for kind in [FRICTIONLESS, COMPONENTS] {

@@ -26,7 +26,7 @@ const PATCH: Stack = Stack {
 /// Forces that supports may lack, as a share of the load.
 const BALANCE: f64 = 1e-2;
 
-/// Runs a deck: whether it ended with 0, and what is wrong with what it accepted.
+/// Runs a deck: whether it ended with 0, and the faults of its accepted states.
 fn run(stack: &Stack) -> (bool, Option<String>) {
     let folder = tempfile::tempdir().expect("a scratch folder");
     stack.write(folder.path(), |_| {});
@@ -45,7 +45,7 @@ fn run(stack: &Stack) -> (bool, Option<String>) {
     for (step, time) in results.times().iter().enumerate() {
         for (axis, down) in ["X", "Y", "Z"].into_iter().zip(stack.down()) {
             let lacking = (total(&format!("REACTION_{axis}"), step) + down * time * stack.force()).abs();
-            // Guides carry what the interface pushes sideways, and are among the supports.
+            // Guides carry the lateral force of the interface, and are among the supports.
             if lacking.is_nan() || lacking > BALANCE * time * stack.force() {
                 return (
                     ended,
@@ -115,7 +115,7 @@ fn blocks_with_a_gap_in_space() {
     assert!(sweep(&stacks) >= 3);
 }
 
-/// Gaps that a load closes are as wide in any position: what ends with a result upright does so turned.
+/// Gaps that a load closes are as wide in any position: a stack with a result upright has one rotated, too.
 #[test]
 fn gaps_turned_about_odd_axes() {
     let (mut upright, mut turned) = (Vec::new(), Vec::new());

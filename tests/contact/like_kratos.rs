@@ -1,5 +1,5 @@
-//! What contact does only because Kratos does it: every setting that `--like kratos` lays under a deck is named with its source, and
-//! switching it changes what is said here.
+//! Contact behaviour that only imitates Kratos: every setting that `--like kratos` changes is named with its source, and switching it
+//! changes the results that are stated here.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -11,7 +11,7 @@ use zelus::contact_structural_mechanics::kratos::DEVIATIONS;
 /// Settings of contact in `configs/like_kratos` that are tolerances, whose default is another number for the same thing.
 const TOLERANCES: &str = "_absolute_tolerance";
 
-/// What shows that a setting matters.
+/// Proof that a setting matters.
 enum Witness {
     /// A case that runs as Kratos does where `like` holds, else with the defaults; it changes with the other value of the setting.
     Case { folder: &'static str, like: bool, changes: Change },
@@ -22,7 +22,7 @@ enum Witness {
 use Change::{Iterations, Results};
 use Witness::{Case, Test};
 
-/// What a setting changes.
+/// Effect of a setting.
 enum Change {
     /// The numbers of iterations.
     Iterations,

@@ -1,5 +1,5 @@
-//! Methods of contact against closed forms (ANALYTIC): how Uzawa's iteration converges, what a perturbed Lagrangian leaves
-//! open, how a bar rebounds in explicit and implicit steps.
+//! Methods of contact against closed forms (ANALYTIC): convergence of Uzawa's iteration, the gap of a perturbed Lagrangian, rebound of
+//! a bar in explicit and implicit steps.
 
 use crate::support::{Results, change, read_json, root, said, scratch_copy, zelus};
 use serde_json::{Value, json};
@@ -12,14 +12,14 @@ fn case(name: &str) -> tempfile::TempDir {
     scratch_copy(&root().join("tests/cases").join(name))
 }
 
-/// Runs the deck of a folder; what it said.
+/// Runs the deck of a folder; returns the output.
 fn run(folder: &Path) -> String {
     let output = zelus(folder, &["run", DECK]);
     assert!(output.status.success(), "{}", said(&output));
     said(&output)
 }
 
-/// The last number after `name` in what a run said.
+/// The last number after `name` in the output of a run.
 fn number_after(said: &str, name: &str) -> f64 {
     let (_, rest) = said.rsplit_once(name).unwrap_or_else(|| panic!("{name:?} is not in\n{said}"));
     let word: String = rest.trim_start().chars().take_while(|c| !c.is_whitespace() && *c != ',').collect();
@@ -118,8 +118,8 @@ fn an_adapted_penalty_brings_the_penetration_between_its_bounds() {
     }
 }
 
-/// Algorithm 7 as the reference program runs it and as it is printed: a penalty that is too soft grows until the penetration is
-/// within the limit, and multipliers are what they are without it.
+/// Algorithm 7 as the reference program runs it and as it is printed: a penalty that is too soft grows until the penetration is within
+/// the limit, and multipliers are the same without it.
 #[test]
 fn an_adapted_augmented_lagrangian_ends_within_its_limit_or_where_it_would_have_ended() {
     let stiffness = stack_stiffness();
@@ -254,13 +254,13 @@ fn contact_that_is_asked_for_must_be_there() {
     assert!(said(&output).contains("ensure_contact"), "{}", said(&output));
 }
 
-/// What a bar of length 1 does that hits a wall: wave speed 1, density 1, speed 0.01, gap 0.001.
+/// Impact of a bar of length 1 on a wall: wave speed 1, density 1, speed 0.01, gap 0.001.
 struct Impact {
     /// Displacement of the bar's centre of mass at the end, over the exact one.
     displacement: f64,
     /// Kinetic energy at the end over that of the start.
     energy: f64,
-    /// What the program said.
+    /// Output of the program.
     said: String,
 }
 
@@ -359,8 +359,8 @@ fn impact(method: &str, elements: usize, time_step: f64, springs: Value) -> Impa
     Impact { displacement: mean("DISPLACEMENT_Y", 1) - exact, energy: mean("VELOCITY_Y", 2) / 1e-4, said }
 }
 
-/// Contact makes no energy in explicit steps up to the critical one of the bar, whatever the penalty asked for: it is lowered to
-/// what the steps carry. One that is given stays, and is warned of.
+/// Contact makes no energy in explicit steps up to the critical one of the bar, whatever the penalty asked for: it is lowered to a
+/// value that is stable for the steps. One that is given stays, and is warned of.
 #[test]
 fn explicit_contact_makes_no_energy() {
     let h = 0.05;

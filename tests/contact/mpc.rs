@@ -72,7 +72,7 @@ impl Problem {
     }
 }
 
-/// What a run gives: nodes in order of their making, displacements and reactions of the last step, and iterations.
+/// Outcome of a run: nodes in order of their making, displacements and reactions of the last step, and iterations.
 struct Outcome {
     nodes: Vec<Vec3>,
     displacement: Vec<Vec3>,
@@ -450,7 +450,7 @@ fn frames_and_numbers_change_nothing() {
     }
 }
 
-/// Supports bear what constraints hand on to them: where all masters are held, and where a slave is, their forces balance
+/// Reactions include the forces that constraints hand on to supports: where all masters are held, and where a slave is, they balance
 /// those of the drive, moments too where nothing slides.
 #[test]
 fn supports_bear_what_constraints_hand_on() {

@@ -17,7 +17,7 @@ struct Run {
 }
 
 impl Run {
-    /// A case with another formulation, all defaults of its process but for what the problem itself says.
+    /// A case with another formulation, all defaults of its process but for settings of the problem itself.
     fn of(case: &str, process: &str, formulation: &str) -> Self {
         let scratch = scratch_copy(&root().join("tests/cases").join(case));
         let file = scratch.path().join(DECK);
@@ -89,7 +89,7 @@ fn sheared_cylinders() {
         }
         let [sheared, expected] = [&penalty, &twin].map(|run| run.total("AUGMENTED_TANGENT_CONTACT_PRESSURE_X", time));
         assert!((sheared / expected - 1.0).abs() < TOLERANCE, "{sheared}, by multipliers {expected}");
-        // At the edge of stick bodies slip by as little as the spring gives way.
+        // At the edge of stick bodies slip by as little as the elongation of the spring.
         for (quantity, tolerance) in [
             ("AUGMENTED_NORMAL_CONTACT_PRESSURE", TOLERANCE),
             ("AUGMENTED_TANGENT_CONTACT_PRESSURE_X", 10.0 * TOLERANCE),

@@ -1,7 +1,7 @@
 //! How near contact comes to closed forms (ANALYTIC) on two meshes: the error falls with the size of the elements.
 //!
-//! The checks of a case name the nodes and the exact values; loads are so light that what the closed forms neglect is less
-//! than what the meshes leave.
+//! The checks of a case name the nodes and the exact values; loads are so light that the neglected terms of the closed forms are less
+//! than the errors of the meshes.
 
 use crate::support::{Results, read_json, root, said, scratch_copy, zelus};
 use std::collections::BTreeMap;

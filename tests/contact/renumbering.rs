@@ -59,7 +59,7 @@ fn run(folder: &Path) -> Result<Vec<usize>, String> {
     Ok(steps.map(|step| step["iterations"].as_array().map_or(0, Vec::len)).collect())
 }
 
-/// What differs between a deck and the same deck numbered otherwise.
+/// Difference between the results of a deck and of the same deck numbered otherwise.
 fn difference(folder: &Path) -> Result<(), String> {
     let (one, other) = (scratch_copy(folder), scratch_copy(folder));
     let mesh = std::fs::read_dir(folder)

@@ -5,7 +5,7 @@ use crate::blocks::{Deck, Joint, Mesh, POISSON, Vec3};
 use serde_json::{Value, json};
 use zelus::{RunOptions, Silent, Simulation};
 
-/// What a block is made of: whether of simplices, and whether of second order, with nodes in the middle of faces or not.
+/// Kind of the elements of a block: whether simplices, and whether of second order, with nodes in the middle of faces or not.
 pub type Kind = (bool, Option<bool>);
 
 const LINEAR: Option<bool> = None;

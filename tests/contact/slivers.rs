@@ -71,7 +71,7 @@ fn pressures_beside_the_edge_of_a_master_are_usable() {
     }
 }
 
-/// What Kratos does there: the force of a sliver by its area.
+/// Kratos' result: the force of a sliver by its area.
 #[test]
 fn without_a_least_coverage_slivers_report_anything() {
     let (found, force) = pressures(2, 1e-3, Some(0.0));

@@ -11,10 +11,10 @@ struct Expected {
     deck: String,
     source: String,
     exit_code: i32,
-    /// What the program must say.
+    /// Lines that the program must print.
     says: Vec<String>,
     columns: Vec<String>,
-    /// What double precision may leave of a value or norm.
+    /// Round-off of a value or norm in double precision.
     round_off: f64,
     /// Numbers as the specification prints them.
     printed: Vec<Printed>,
@@ -84,7 +84,7 @@ fn problems_of(expected: &Expected, folder: &Path) -> Vec<String> {
     for (at, (found, wanted)) in written.iterates.iter().zip(&expected.iterates).enumerate() {
         let pairs = found.values.iter().zip(&wanted.values).chain([(&found.residual_norm, &wanted.residual_norm)]);
         for (found, wanted) in pairs {
-            // A comparison that is false for what is not a number.
+            // A comparison that is false for a value that is not a number.
             let close = (found - wanted).abs() <= 1e-9 * wanted.abs() + expected.round_off;
             if !close {
                 problems.push(format!("iterate {at}: {found:e}, expected {wanted:e}"));

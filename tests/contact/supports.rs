@@ -12,7 +12,7 @@ use zelus as _;
 
 const NULL: Value = Value::Null;
 
-/// Runs a deck and gives what it said and the displacement of every node.
+/// Runs a deck; returns the output and the displacement of every node.
 fn run(deck: &Deck, folder: &Path, change: impl FnOnce(&mut Value)) -> Result<(String, Vec<Vec3>), String> {
     deck.write(folder, change);
     let output = zelus(folder, &["run", "ProjectParameters.json", "--threads", "1"]);
@@ -413,7 +413,7 @@ fn a_slave_node_at_the_origin_is_as_any_other() {
     }
 }
 
-/// What supports move on both sides slides, however little: the friction is that of Coulomb's law for any length of the slip.
+/// A node that supports move on both sides slides, however little: the friction is that of Coulomb's law for any length of the slip.
 #[test]
 fn driven_sides_slide_however_little() {
     let force = |motion: &str| {

@@ -13,7 +13,7 @@ use std::path::Path;
 
 const DECK: &str = "ProjectParameters.json";
 
-/// What lengths and stresses are multiplied by.
+/// Factors of lengths and stresses.
 const UNITS: [(f64, f64); 6] = [(1e3, 1e-6), (1e3, 1.0), (1e-3, 1e6), (1e6, 1.0), (1.0, 1e6), (1.0, 1e-6)];
 
 /// Difference allowed, relative to the largest value of the quantity: coordinates are rounded anew.
@@ -28,7 +28,7 @@ const TOLERANCE_AT_THE_AXIS: f64 = 5e-9;
 /// The same where surfaces slide in space: the decks' tolerance of slip, 1e-9, leaves 1e-8 in the multipliers.
 const TOLERANCE_OF_SLIDING: f64 = 3e-8;
 
-/// Quantities by whose largest value is measured what is compared, and that.
+/// The reference quantity, by its largest value, and the column that is compared.
 const COMPARED: [(&str, &str); 7] = [
     ("DISPLACEMENT", "DISPLACEMENT_X"),
     ("DISPLACEMENT", "DISPLACEMENT_Y"),
@@ -161,7 +161,7 @@ impl Deck {
         Ok((iterations, values(folder.path())))
     }
 
-    /// What the units change, in words.
+    /// Effects of the units, in words.
     fn problems(&self) -> Vec<String> {
         let (iterations, values) = match self.outcome(1.0, 1.0) {
             Ok((iterations, values)) if !values.is_empty() => (iterations, values),

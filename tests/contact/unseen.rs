@@ -1,5 +1,5 @@
-//! Bodies that do not meet, or that are in each other where contact sees nothing: no wrong answer ends with exit 0, and what never
-//! happened is said at the end.
+//! Bodies that do not meet, or that penetrate each other undetected by contact: no wrong result ends with exit 0, and pairs never in
+//! contact are reported at the end.
 
 use std::path::Path;
 

@@ -19,14 +19,14 @@ const PRESSURE: f64 = 2.0;
 /// Wear by pressure and way.
 const WEAR: f64 = 1e-4;
 
-/// A block of width 1 on one of width 3 that does not give way, and slides on it.
+/// A block of width 1 that slides on a rigid one of width 3.
 #[derive(Clone, Copy)]
 struct Sliding {
     space: usize,
     simplices: bool,
     second_order: bool,
     joint: Joint,
-    /// What the bottom of the upper block lacks at a place along it.
+    /// Height by which the bottom of the upper block is cut back at a place along it.
     crown: fn(f64) -> f64,
     steps: usize,
     /// Way of sliding in the run.
@@ -118,7 +118,7 @@ impl Sliding {
     }
 }
 
-/// What a run has worn.
+/// Wear of a run.
 #[derive(Debug, PartialEq)]
 struct Worn {
     /// Depth by node id, of nodes that this rank has.
@@ -180,7 +180,7 @@ impl Worn {
     }
 }
 
-/// The depth of a block under a constant pressure is k p s, and so is what its shape has lost.
+/// The depth of a block under a constant pressure is k p s, and so is the change of its shape.
 #[test]
 fn a_sliding_block_wears_by_pressure_and_way() {
     let space = Sliding { space: 3, cells: [3, 2, 2], ..PLANE };
@@ -253,7 +253,7 @@ fn a_crowned_pin_wears_flat() {
     near(worn.total(0), mean, 1e-4, "volume");
     let bottom = worn.bottom(1, crown);
     assert_eq!(bottom.len(), 11);
-    // What the crown lacks is as much over the width of the bottom as one twelfth of its curvature, on straight facets a little more.
+    // The crown cuts back as much over the width of the bottom as one twelfth of its curvature, on straight facets a little more.
     let lacking =
         bottom.windows(2).map(|two| 0.05 * two.iter().map(|(_, [start, _])| start[1]).sum::<f64>()).sum::<f64>();
     for (depth, [start, end]) in bottom {

@@ -7,7 +7,7 @@ use crate::runs::*;
 use crate::scene::{COMPONENTS, Corner, FRICTIONLESS, Scene, corner, die};
 use crate::support::{Results, contents, read_json, root, said, scratch_copy, zelus};
 
-/// Makes the channel of slug flow one whose heat is carried along paths, in time.
+/// Makes the channel of slug flow transient, with semi-Lagrangian advection of heat.
 const CARRIED: &[(&str, &str)] = &[
     ("\"stationary\"", "\"transient\", \"time_integration_method\": \"semi_implicit\""),
     ("\"time_step\": 1.0", "\"time_step\": 0.005"),
@@ -69,7 +69,7 @@ fn heat_through_contact() {
     equals_serial(&deck.to_string_lossy(), &[], EXACT, true);
 }
 
-/// By turns with a structure in contact, and carried along paths through the whole mesh.
+/// Staggered coupling with a structure in contact, and semi-Lagrangian advection through the whole mesh.
 #[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn heat_beside_other_things() {
@@ -224,7 +224,7 @@ fn reactions_of_supports_that_constraints_reach() {
     equals_serial("mpc/pressed_and_opened_hexahedra", &friction, EQUAL, true);
 }
 
-/// A corner that lands between the nodes of a coarse slave makes energy: what the work of contact says, on any number of ranks.
+/// A corner that lands between the nodes of a coarse slave makes energy: the work of contact shows it, on any number of ranks.
 #[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn work_of_contact_is_counted_once() {

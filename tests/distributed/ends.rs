@@ -40,7 +40,7 @@ fn full_disk(folder: &Path, rank: usize, file: &str) -> Output {
     let mut command = mpirun(folder);
     let program = env!("CARGO_BIN_EXE_zelus");
     let (path, name) = file.rsplit_once('/').map_or((".", file), |(path, name)| (path, name));
-    // what a rank writes first goes to the name with its process id, which exec keeps
+    // a rank writes first to the name with its process id, which exec keeps
     let full = format!("mkdir -p {path}; ln -s /dev/full {path}/.{name}.$$.part; exec {program} run {DECK}");
     for at in 0..3 {
         command.args([if at > 0 { ":" } else { "-n" }, if at > 0 { "-n" } else { "1" }]);

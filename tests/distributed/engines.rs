@@ -6,7 +6,7 @@ use std::process::Output;
 use crate::runs::*;
 use crate::support::{change, read_json, root, said, scratch_copy, zelus};
 
-/// κ of the system of all ranks, not of what one of them adds to it.
+/// κ of the system of all ranks, not of the share of one.
 #[test]
 #[cfg_attr(not(feature = "mpi"), ignore = "needs the feature `mpi`")]
 fn condition_numbers_are_those_of_the_whole_system() {
@@ -115,7 +115,7 @@ fn multigrid_over_ranks_with_friction_and_ties() {
     multigrid_equals_serial("contact_2d/friction_slide", &[]);
     multigrid_equals_serial("contact_3d/friction_slide", &[]);
     let slips = ("\"FRICTION_TRACTION\", \"WEIGHTED_SLIP\"", "\"DISPLACEMENT\"");
-    // A stiff penalty makes of what criteria leave of displacements more of the pressure.
+    // With a stiff penalty the remaining errors of displacements cause larger ones of the pressure.
     let pressures = ("\"AUGMENTED_NORMAL_CONTACT_PRESSURE\"", "\"DISPLACEMENT\"");
     multigrid_equals_serial("contact_3d/friction_penalty_slide", &[slips, pressures]);
     multigrid_equals_serial("contact_3d/friction_stick", &[("\"WEIGHTED_SLIP\"", "\"DISPLACEMENT\"")]);

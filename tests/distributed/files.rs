@@ -1,4 +1,4 @@
-//! What ranks write, and runs that stand beside each other.
+//! Output of several ranks, and runs that stand beside each other.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,7 +10,7 @@ use crate::runs::*;
 use crate::support::{change, contents, read_json, root, said, scratch_copy, zelus};
 use crate::vtu::{Columns, read_vtu, sources};
 
-/// What a picture holds, whatever its pieces: columns of each node and of each cell, by id, and the corners of the cells.
+/// Contents of a picture, whatever its pieces: columns of each node and of each cell, by id, and the corners of the cells.
 #[derive(Debug, Default, PartialEq)]
 struct Pictured {
     nodes: BTreeMap<i64, BTreeMap<String, Vec<f64>>>,
@@ -108,7 +108,7 @@ fn ranks_write_a_piece_of_the_picture_each() {
     }
 }
 
-/// Put before the JSON output of a deck: what rank 0 writes of the values of all.
+/// Put before the JSON output of a deck: rank 0 writes the values of all.
 const FILES: &str = r#""files": [
     {"python_module": "integration_values_extrapolation_to_nodes_process", "kratos_module": "KratosMultiphysics",
         "Parameters": {"model_part_name": "Structure", "list_of_variables": ["VON_MISES_STRESS"]}},
@@ -162,7 +162,7 @@ fn files_of_one_rank_hold_what_all_have() {
             let number = |word: &str| word.trim_end_matches(',').parse::<f64>().ok();
             let largest = text.split_whitespace().filter_map(number).fold(0.0, |most: f64, x| most.max(x.abs()));
             let same = |(a, b): (&str, &str)| match (number(a), number(b)) {
-                // What should be zero is round-off of stresses and forces.
+                // Values that should be zero are round-off of stresses and forces.
                 (Some(a), Some(b)) => {
                     let size = a.abs().max(b.abs());
                     (a - b).abs() <= EQUAL * size || size <= 1e-12 * largest

@@ -1,4 +1,4 @@
-//! Runs on several processes: the same answers in the same iterations as one process gives, and clean ends of failed runs.
+//! Parallel runs on several ranks: the same results in the same iterations as one rank gives, and clean ends of failed runs.
 //!
 //! They need the feature `mpi`, without which they are ignored, and mpirun.
 

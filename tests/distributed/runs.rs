@@ -1,4 +1,4 @@
-//! Runs of decks by one process and by many, and what they are compared by.
+//! Runs of decks by one rank and by many, and their comparison.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -16,7 +16,7 @@ pub const DECK: &str = "ProjectParameters.json";
 /// Within this a failed run ends on all ranks.
 pub const PROMPT: Duration = Duration::from_secs(30);
 
-/// `mpirun` with what it needs to start more processes than there are cores.
+/// `mpirun` with the options to start more processes than there are cores.
 pub fn mpirun(folder: &Path) -> Command {
     let version = Command::new("mpirun").arg("--version").output().expect("mpirun, which the feature `mpi` needs");
     let mut command = Command::new("mpirun");
@@ -64,11 +64,10 @@ pub fn outcome(folder: &Path, before: &[std::path::PathBuf]) -> (BTreeMap<String
     (found, steps.map(|step| step["iterations"].as_array().map_or(0, Vec::len)).collect())
 }
 
-/// What is left of weighted gaps that are all closed: the round-off of positions in blocks of unit size, which differs between
-/// machines.
+/// Bound of the weighted gaps of closed contact: the round-off of positions in blocks of unit size, which differs between machines.
 const CLOSED_GAP: f64 = 1e-15;
 
-/// Holds `found` to what is expected, within `tolerance` of the largest value of each quantity; gaps that are all closed,
+/// Compares `found` with the expected values, within `tolerance` of the largest value of each quantity; gaps that are all closed,
 /// within [`CLOSED_GAP`].
 pub fn assert_near(found: &BTreeMap<String, f64>, expected: &BTreeMap<String, f64>, tolerance: f64, what: &str) {
     let mut largest: BTreeMap<&str, f64> = BTreeMap::new();
@@ -118,13 +117,13 @@ pub fn equals_serial(case: &str, changes: &[(&str, &str)], tolerance: f64, same_
     }
 }
 
-/// A tolerance for what has a closed form, which `tests/cases.rs` holds the serial run to.
+/// A tolerance for results with a closed form, with which `tests/cases.rs` compares the serial run.
 pub const EXACT: f64 = 1e-10;
 
 /// A tolerance where round-off of the slip grows over steps of one iteration each, as `tests/contact/renumbering.rs` says.
 pub const GROWN: f64 = 1e-7;
 
-/// A tolerance for what has none.
+/// A tolerance for results without one.
 pub const EQUAL: f64 = 1e-9;
 
 pub fn case_folder(name: &str) -> std::path::PathBuf {

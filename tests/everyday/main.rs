@@ -1,7 +1,7 @@
 //! Everyday problems of contact, each without friction and with, run with default settings as a first attempt would.
 //!
-//! Every accepted step must be in balance and fulfil the conditions of contact and friction, and integrate all of what faces
-//! the master; besides, each problem has a number that theory or symmetry gives.
+//! Every accepted step must be in balance and fulfil the conditions of contact and friction, and integrate all facets opposite the
+//! master; besides, each problem has a number that theory or symmetry gives.
 //!
 //! `ZELUS_EVERYDAY=FOLDER` in the environment keeps the decks there.
 
@@ -20,7 +20,7 @@ use model::{Look, PLAIN};
 use outcome::{Outcome, norm};
 use problems::{ALL, Punch, ball, punch};
 
-/// Problems that are looked at in several ways.
+/// Problems that are solved in several positions.
 const STEADY: [&str; 10] = [
     "press_fit",
     "lug_with_pin",
@@ -180,7 +180,7 @@ fn surfaces_end_within_facets() {
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }
 
-/// What touches by a billionth of its size at the origin is known as well as what lies around it: gaps of nodes there stalled.
+/// Contact over a billionth of its size at the origin is resolved as well as that around it: gaps of nodes there stalled.
 #[test]
 fn light_touches_end() {
     let mut faults = Vec::new();

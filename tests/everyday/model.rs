@@ -50,14 +50,14 @@ pub fn high(axis: usize) -> impl Fn(Vec3) -> bool {
     move |x| x[axis] > 1.0 - 1e-9
 }
 
-/// How a problem is looked at; its answer does not change with it.
+/// Variant of a problem: position, size, numbering, formulation; its solution does not change with it.
 #[derive(Clone, Copy)]
 pub struct Look {
     /// Angle by which everything is turned.
     pub turn: f64,
     /// The axis about which it is; a unit vector.
     pub about: Vec3,
-    /// What lengths are multiplied by.
+    /// Factor of lengths.
     pub size: f64,
     /// Whether nodes and elements are numbered backwards.
     pub backwards: bool,
@@ -69,7 +69,7 @@ pub struct Look {
 pub const PLAIN: Look = Look { turn: 0.0, about: [0.0, 0.0, 1.0], size: 1.0, backwards: false, penalty: false };
 
 impl Look {
-    /// Rows of the rotation (Rodrigues); what is next to nothing is nothing.
+    /// Rows of the rotation (Rodrigues); round-off of zero is set to zero.
     fn rows(&self) -> [Vec3; 3] {
         let ([x, y, z], (s, c)) = (self.about, self.turn.sin_cos());
         let cross = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
@@ -354,7 +354,7 @@ impl Model {
     /// Runs the deck in a scratch folder. With `ZELUS_EVERYDAY=FOLDER` in the environment it is kept there under `name`.
     ///
     /// # Errors
-    /// What the program said, when it did not end with 0.
+    /// Outcome of the run, or the output of the program when it did not end with 0.
     pub fn run(&self, name: &str) -> Result<Outcome, String> {
         let scratch = tempfile::tempdir().expect("a scratch folder");
         let kept = std::env::var_os("ZELUS_EVERYDAY").map(|folder| Path::new(&folder).join(name));

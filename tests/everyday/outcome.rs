@@ -1,4 +1,4 @@
-//! What a run leaves, and what holds in every state of contact: balance, complementarity, friction, facets covered.
+//! Outcome of a run, and the conditions of every state of contact: balance, complementarity, friction, facets covered.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -7,17 +7,17 @@ use crate::grid::Vec3;
 use crate::model::Model;
 use crate::support::{Results, read_json};
 
-/// Largest error of balance, as a share of the largest reaction: what the default tolerance of residuals leaves.
+/// Largest error of balance, as a share of the largest reaction: that of the default tolerance of residuals.
 const BALANCE: f64 = 2e-3;
 /// Forces that count in every state, as a share of the largest of the run.
 const LEAST_FORCE: f64 = 1e-2;
-/// What the default tolerances leave of tension, of gaps in mesh sizes, and of the bound of friction.
+/// Bounds that the default tolerances imply: of tension, of gaps in mesh sizes, and of the bound of friction.
 const TRACTION: f64 = 2e-3;
 const GAP: f64 = 1e-3;
 /// Share of a facet's length that may be uncovered where both sides are polygons.
 const COVERED: f64 = 0.02;
 
-/// Share of a node's facets, of that of a neighbour, below which it is beside the master.
+/// Share of a node's facets, of that of a neighbour, below which it is at the master's edge.
 const BESIDE: f64 = 0.11;
 
 /// An accepted step, by node.
@@ -114,7 +114,7 @@ impl Outcome {
         self.states.last().expect("a step")
     }
 
-    /// What no accepted state may show, in words; `load` is the sum of the loads at a time from 0 to 1.
+    /// Faults of accepted states, in words; `load` is the sum of the loads at a time from 0 to 1.
     pub fn faults(&self, model: &Model, load: impl Fn(f64) -> Vec3) -> Vec<String> {
         let mut faults = Vec::new();
         let forces = self.states.iter().map(|state| state.forces(model, load(state.time)));
@@ -203,7 +203,7 @@ impl State {
         faults
     }
 
-    /// Nodes beside the master: the share of their facets that it faces is small against that of a neighbour.
+    /// Nodes at the master's edge: the covered share of their facets is small against that of a neighbour.
     fn beside(&self, model: &Model) -> BTreeSet<usize> {
         let facets = || model.pairs.iter().flat_map(|[slave, _]| slave);
         let mut whole: BTreeMap<usize, f64> = BTreeMap::new();

@@ -11,7 +11,7 @@ use crate::outcome::{Outcome, norm};
 const STEEL: f64 = 210e3;
 const POISSON: f64 = 0.3;
 
-/// A deck with the sum of its loads, and what its answer must be.
+/// A deck with the sum of its loads, and its expected result.
 pub struct Problem {
     pub model: Model,
     pub load: fn(f64) -> Vec3,
@@ -45,7 +45,7 @@ pub const ALL: [(&str, Make, usize); 19] = [
     ("ball_on_block", ball_on_block, 3),
 ];
 
-/// A fault when a number is not what it should be, within a share of it.
+/// A fault when a number differs from the expected one by more than a share of it.
 fn close(what: &str, found: f64, expected: f64, share: f64) -> Option<String> {
     let off = (found - expected).abs() / expected.abs();
     (off.is_nan() || off > share)
@@ -583,7 +583,7 @@ fn tubes(friction: Option<f64>, steps: usize, finer: usize) -> Problem {
         let push = state.sum(&pushed)[2];
         let mut faults: Vec<String> = Vec::new();
         if let Some(friction) = friction {
-            // what a pressure all round has along y, over a quarter
+            // normal force of a uniform pressure over a quarter: π/2 times its component along y
             let pressed = FRAC_PI_2 * state.sum(&inside)[1].abs();
             faults.extend(close("push over friction", push, friction * pressed, 0.05));
             faults.extend(close("push of the other", push, -state.sum(&held)[2], 5e-3));

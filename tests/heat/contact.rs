@@ -86,7 +86,7 @@ impl Bars {
             "end_time": 1e12}, "solver_settings": self.solver(), "processes": {"list": self.processes(laws)}})
     }
 
-    /// Heat that supports feed and take up, with what the report says passes from slaves to masters.
+    /// Heat that supports feed and take up, with the heat from slaves to masters of the report.
     fn run(&self, laws: &Value) -> ([f64; 2], f64) {
         let scratch = tempfile::tempdir().expect("a scratch folder");
         self.write(scratch.path(), &self.deck(laws));
@@ -104,7 +104,7 @@ fn fed(results: &Results, step: usize) -> [f64; 2] {
     [1.0, -1.0].map(|sign| all.values().map(|value| (sign * value).max(0.0)).sum())
 }
 
-/// What the report says passes from slaves to masters in a step.
+/// Heat from slaves to masters in a step, from the report.
 fn passed(report: &Value, step: usize) -> f64 {
     number(report, step, "heat_from_slaves")
 }
@@ -279,8 +279,8 @@ fn growing(gap: f64, laws: &Value, steps: usize, hot: &str, strategy: &str) -> (
     (results, read_json(&scratch.path().join("report.json")).expect("the report"))
 }
 
-/// A bar that is alone is of its end's temperature throughout and grows by α L ΔT, more than the gap in the fourth step. Heat passes from
-/// that one on where both are solved for by turns or together, else from the next.
+/// A bar that is alone is of its end's temperature throughout and grows by α L ΔT, more than the gap in the fourth step. Heat passes
+/// from that one on in staggered or monolithic coupling, else from the next.
 #[test]
 fn a_bar_grows_into_contact_and_conducts_from_then_on() {
     let laws = json!([{"law": "constant", "conductance": 20.0}]);
@@ -297,8 +297,8 @@ fn a_bar_grows_into_contact_and_conducts_from_then_on() {
     }
 }
 
-/// Bars between walls press on each other the more the warmer they are, and so conduct the better: by turns all of it is found in the
-/// first step, else in time.
+/// Bars between walls press on each other the more the warmer they are, and so conduct the better: staggered iteration finds all of it
+/// in the first step, a sequential one over several steps.
 #[test]
 fn conductance_follows_the_pressure() {
     let laws = json!([{"law": "pressure", "conductance": 100.0, "hardness": 5e3}]);
@@ -322,7 +322,7 @@ fn conductance_follows_the_pressure() {
     let (_, report) = growing(0.0, &laws, 2, "400.0", "monolithic");
     let together = -passed(&report, 0);
     // Two more iterations than the structure alone needs, the last of which squares the residual.
-    assert!((together - first).abs() < 1e-6 * q, "together {together}, by turns {first}");
+    assert!((together - first).abs() < 1e-6 * q, "monolithic {together}, staggered {first}");
     let residual = |iteration: usize| {
         let check = &report["steps"][0]["iterations"][iteration]["checks"][0];
         check["ratio"].as_f64().unwrap_or_else(|| panic!("no residual in iteration {iteration}: {check}"))
@@ -332,7 +332,7 @@ fn conductance_follows_the_pressure() {
 
     let (_, report) = growing(0.0, &laws, 12, "400.0", "sequential");
     let last = -passed(&report, 11);
-    assert!((last - first).abs() < 1e-5 * q, "in time {last}, by turns {first}");
+    assert!((last - first).abs() < 1e-5 * q, "in time {last}, staggered {first}");
     assert!((passed(&report, 0) + q).abs() > 1e-2 * q, "the first step alone would do");
 }
 
@@ -454,7 +454,7 @@ fn friction_heats_both_bodies() {
         let (report, results) = warm_blocks(&blocks, mortar, strategy, [0.0; 2], &laws);
         for step in 3..results.len() {
             let heat = number(&report, step, "heat_of_friction");
-            // The lower body gives way, so that slips are not quite those of the upper one.
+            // The lower body deforms, so that slips are not quite those of the upper one.
             assert!((heat - exact).abs() < 2e-2 * exact, "{mortar}, step {step}: {heat} {exact}");
             let [enters, leaves] = fed(&results, step);
             assert!((leaves - enters - heat).abs() < 1e-9 * heat, "{mortar}, step {step}: {enters} {leaves} {heat}");
@@ -470,8 +470,9 @@ fn friction_heats_both_bodies() {
     }
 }
 
-/// Barber's rod at rest, in one step: what warms the rod closes its gap, and what passes there cools it again. Heat and structure by turns
-/// swing between touch and none; together they are found at once (the numbers of `examples/barber_rod`).
+/// Steady state of Barber's rod, in one step: a warm rod closes its gap, and conduction in contact cools it again. Staggered coupling
+/// of heat and structure oscillates between contact and none; monolithic coupling finds the state at once (the numbers of
+/// `examples/barber_rod`).
 #[test]
 fn barbers_rod_comes_to_rest_in_one_step() {
     let scratch = scratch_copy(&root().join("examples/barber_rod"));
@@ -489,7 +490,7 @@ fn barbers_rod_comes_to_rest_in_one_step() {
     }
 }
 
-/// What needs an iteration of Newton's of both is refused without one.
+/// Monolithic coupling needs Newton's iteration, and is refused without one.
 #[test]
 fn both_together_need_newtons_iteration() {
     let scratch = scratch_copy(&root().join("examples/barber_rod"));
@@ -523,7 +524,7 @@ fn below_the_critical_speed_pressures_settle() {
         let results = Results::read(&scratch.path().join("pressure.json")).expect("results");
         for pressure in results.nodal("CONTACT_PRESSURE", results.len() - 1).into_values() {
             let exact = 1.0 / (1.0 - share);
-            // What the bar's shape changes is 1e-4.
+            // The change of the bar's shape is 1e-4.
             assert!((pressure - exact).abs() < 1e-3 * exact, "{share}: {pressure} {exact}");
         }
     }

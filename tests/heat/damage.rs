@@ -1,4 +1,4 @@
-//! A bar that breaks: what it takes is the fracture energy by area, whatever the mesh.
+//! A bar that breaks: it dissipates the fracture energy by area, whatever the mesh.
 
 use serde_json::{Value, json};
 

@@ -15,7 +15,7 @@ const OPEN: &[(&str, &str)] = &[
     ("own_thermomech/total_lagrangian_gradient", BY_TURNS),
     ("own_thermomech/transient_block_tet", BY_TURNS),
 ];
-const BY_TURNS: &str = "heat on the mesh as the last step left it, not by turns";
+const BY_TURNS: &str = "heat on the mesh as the last step left it, not staggered";
 
 fn folder() -> Option<PathBuf> {
     let named = std::env::var_os("ZELUS_HEAT_DECKS").map(PathBuf::from);
@@ -27,7 +27,7 @@ fn folder() -> Option<PathBuf> {
     there.then_some(folder)
 }
 
-/// The counted decks that do not pass, and what was said.
+/// The counted decks that do not pass, and the output.
 fn failed(folder: &Path, like: &str) -> (Vec<String>, String) {
     let scratch = tempfile::tempdir().expect("a scratch folder");
     let scores = scratch.path().join("scores.json");

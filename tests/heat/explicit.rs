@@ -1,4 +1,4 @@
-//! Explicit steps of heat: their method, what they carry, what they store, and how long they may be.
+//! Explicit steps of heat: their method, convection, storage and critical length.
 
 use serde_json::{Value, json};
 
@@ -66,7 +66,7 @@ fn explicit_steps_carry_a_pulse_to_second_order() {
     assert!(orthogonal < all, "{orthogonal:e} {all:e}");
 }
 
-/// What supports feed, and sources give, is what nodes store: in each step, to round-off.
+/// Heat from supports and sources equals the heat stored in nodes: in each step, to round-off.
 #[test]
 fn explicit_steps_lose_no_heat() {
     let slab = Slab::new(8);

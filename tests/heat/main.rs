@@ -161,7 +161,7 @@ fn paths_carry_a_slope_unchanged() {
         for column in 0..=20 {
             let x = column as f64 / 20.0;
             let found = last(&results, &slab, column);
-            // Paths of nodes at the left begin outside of the slab, and the next steps pass on what they miss.
+            // Paths of nodes at the left begin outside of the slab, and the next steps pass on the error.
             assert!(x < 0.5 || (found - 2.0 * (x - 0.12)).abs() < 1e-12, "{x}: {found}");
         }
     }
@@ -243,7 +243,7 @@ fn threads_change_no_bit() {
     }
 }
 
-/// What leaves and what is fed add up: REACTION_FLUX of the support balances sources and faces at rest.
+/// Heat that leaves and heat that is fed balance: REACTION_FLUX of the support balances sources and faces in the steady state.
 #[test]
 fn supports_feed_what_leaves() {
     let slab = Slab { rows: 3, ..Slab::new(6) };
@@ -331,7 +331,7 @@ fn what_is_missing_is_said() {
     says(&carried(0.1, 0.1, "x").set("bfecc_substepping", json!(0)), 2, "bfecc_substepping");
 }
 
-/// What enters is what leaves, what the flow carries off and what is stored, in each step.
+/// Heat that enters equals heat that leaves, is advected or stored, in each step.
 #[test]
 fn heat_that_enters_leaves_or_is_stored() {
     let slab = Slab::new(8);
@@ -364,7 +364,7 @@ fn heat_that_enters_leaves_or_is_stored() {
             assert!(left.abs() < 1e-10 * entering, "{entering} {leaving} {carried} {stored}: {left:e}");
             assert!(stored.abs() > 1e-6 && leaving > 0.0 && (carried.abs() > 1e-3) == speed, "{balance}");
         }
-        // What is stored is the change of the mean.
+        // The stored heat is the change of the mean.
         let balance = &steps[3]["balance"]["unknowns"][0];
         let mean = |step: usize| {
             let at = |c: usize| results.nodal("TEMPERATURE", step)[&(slab.node(c, 0) as u64)];
@@ -375,7 +375,7 @@ fn heat_that_enters_leaves_or_is_stored() {
     }
 }
 
-/// Heat at rest is what it is, however long a step is; stored heat, as in Kratos, comes to rest after long ones alone.
+/// The steady state does not depend on the length of a step; stored heat, as in Kratos, becomes steady after long ones alone.
 #[test]
 fn heat_at_rest_knows_no_time() {
     let slab = Slab { height: 0.1, ..Slab::new(5) };

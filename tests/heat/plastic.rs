@@ -74,7 +74,7 @@ fn plastic_work_heats() {
                     "{law} {strategy} node {node}: {temperature} {exact}"
                 );
             }
-            // What the report says enters in a step is what is stored in it.
+            // Heat that enters in a step, by the report, is stored in it.
             let last = report["steps"].as_array().unwrap().last().unwrap();
             let heat =
                 last["balance"]["unknowns"].as_array().unwrap().iter().find(|own| own["unknown"] == "TEMPERATURE");

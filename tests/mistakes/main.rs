@@ -1,5 +1,5 @@
-//! Mistakes that a run could pass over: what a deck asks for and nothing does, states that no contact can be in, bodies that nothing
-//! holds. Each is told with its place, fact and remedy, and good decks hear none of it.
+//! Mistakes that a run could pass over: settings without effect, impossible states of contact, unrestrained bodies. Each is reported
+//! with its place, fact and remedy, and good decks get no message.
 
 #[path = "../support/blocks_of_case.rs"]
 mod blocks_of_case;
@@ -48,7 +48,7 @@ fn go(command: &str, folder: &Path) -> (Option<i32>, String) {
     (output.status.code(), said(&output))
 }
 
-/// The warnings and errors of a run with what to do about them, where folders are no part of them.
+/// The warnings and errors of a run with their remedies, where folders are no part of them.
 fn messages(said: &str) -> String {
     let mut out = String::new();
     let mut remedy = false;
@@ -77,7 +77,7 @@ fn every_mistake_is_told() {
             std::fs::write(at(name), text).expect("a file");
         }
         let code = if code.is_empty() { String::new() } else { format!("[{code}]") };
-        // What fails when it is solved has no errors before.
+        // A deck that fails when it is solved has no errors before.
         let found = if *exit == 2 { 2 } else { 0 };
         for (command, exit) in [("check", found), ("run", *exit)] {
             let (status, said) = go(command, scratch.path());
@@ -87,7 +87,7 @@ fn every_mistake_is_told() {
             }
             let shown = if *told == Told::Before { "check" } else { "run" };
             if command == shown {
-                // What is told while a run goes on is a line of its log.
+                // A message during a run is a line of its log.
                 let line =
                     said.lines().find(|line| line.contains(names) && code.is_empty() && !line.contains("error["));
                 let line = line.map_or_else(String::new, |line| format!("{line}\n"));
@@ -142,7 +142,7 @@ fn nine_mistakes_are_named_at_once() {
             ];
             let unsaid: Vec<&str> = names.into_iter().filter(|name| !said.contains(name)).collect();
             assert!(unsaid.is_empty(), "{command} does not say {unsaid:?}:\n{said}");
-            // What follows from a mistake is none of its own.
+            // The consequences of a mistake are no mistakes of their own.
             assert_eq!(said.matches("error[").count(), if reads { 10 } else { 12 }, "{said}");
         }
     }
@@ -185,7 +185,7 @@ fn keys_given_twice_are_named() {
     assert!(said.contains("warning[duplicate-key]") && said.contains("max_iteration"), "{said}");
 }
 
-/// What a linear solver reads is no mistake, whichever of its settings it is.
+/// A setting that a linear solver reads is no mistake, whichever of its settings it is.
 #[test]
 fn settings_of_linear_solvers_are_read() {
     let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));

@@ -1,4 +1,4 @@
-//! The mistakes: what is done to a good deck, when it is told, and how.
+//! The mistakes: the change of a good deck, the time of the message, and its words.
 
 use serde_json::{Value, json};
 
@@ -29,7 +29,7 @@ pub struct Mistake {
     pub exit: i32,
     pub told: Told,
     pub code: &'static str,
-    /// Words of the message: what it is about.
+    /// Words of the message: its subject.
     pub names: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! The commands of the book run, and do what its pages say.
+//! The commands of the book run, and do as its pages say.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -10,7 +10,7 @@ const TUTORIALS: [&str; 2] = ["examples/disc_on_block", "examples/lug"];
 
 /// A block of commands of a page.
 struct Block {
-    /// What stands after `console`: `example=FOLDER` begins with a copy of that example, `optional=PROGRAM` needs that program.
+    /// Words after `console`: `example=FOLDER` begins with a copy of that example, `optional=PROGRAM` needs that program.
     words: String,
     commands: Vec<String>,
 }
@@ -100,7 +100,7 @@ fn the_lug_behaves_as_its_page_says() {
     }
 }
 
-/// What the gallery runs is what tests run: the examples, each with what is expected of it, and the atlas.
+/// Tests run all commands of the gallery: the examples, each with its expected results, and the atlas.
 #[test]
 fn commands_of_the_gallery_are_those_of_tests() {
     let text = std::fs::read_to_string(root().join("docs/gallery.md")).expect("the page");

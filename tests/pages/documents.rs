@@ -1,4 +1,4 @@
-//! The documents name only what is there.
+//! The documents name only existing files.
 
 use crate::support::root;
 use std::path::Path;

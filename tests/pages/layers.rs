@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// Crates whose `lib.rs` lists its modules from what is used to what uses.
+/// Crates whose `lib.rs` lists its modules so that each uses only those above it.
 const CRATES: [&str; 8] = [
     "core/src",
     "linear_algebra/src",
@@ -48,11 +48,11 @@ const PHYSICS: [&str; 25] = [
     "assume_master_slave",
 ];
 
-/// What a global that changes is made of.
+/// Types of a global that changes.
 const CHANGEABLE: [&str; 6] = ["Mutex", "RwLock", "Cell<", "Lock<", "Atomic", "static mut"];
 
-/// Globals that hold no state of a run: what is read or computed once and never changes, the lock of a library that
-/// takes one caller at a time, and how deep a reader of states within states is on its thread.
+/// Globals that hold no state of a run: constants that are read or computed once, the lock of a library that takes one caller at a
+/// time, and how deep a reader of states within states is on its thread.
 const CONSTANT: [&str; 10] =
     ["DEPTH", "VARIABLES", "FLAGS", "RATES", "RANGES", "CSV_DEFAULTS", "TABLES", "CODES", "METIS", "NAMES"];
 
@@ -131,7 +131,7 @@ fn names_after<'t>(text: &'t str, prefix: &str) -> Vec<&'t str> {
     out
 }
 
-/// What a file uses of the crate it is in: names of modules at its top.
+/// Modules of its own crate that a file uses: names of modules at the crate's top.
 fn used(text: &str, is_at_top: bool) -> Vec<&str> {
     let mut out = names_after(text, "crate::");
     if is_at_top {
@@ -140,7 +140,7 @@ fn used(text: &str, is_at_top: bool) -> Vec<&str> {
     out
 }
 
-/// What uses a module below itself, as "module uses module (file)".
+/// Modules that use one below themselves, as "module uses module (file)".
 fn reaching_forward(folder: &Path) -> Vec<String> {
     let modules = listed(folder);
     let mut files = Vec::new();

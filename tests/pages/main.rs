@@ -1,4 +1,4 @@
-//! What is written is true: the book, documents, examples, the atlas, and the order of the code.
+//! Tests that the documentation is true: the book, documents, examples, the atlas, and the order of the code.
 
 mod atlas;
 mod book;

@@ -39,7 +39,7 @@ fn apply(change: &Change, folder: &Path) {
     }
 }
 
-/// What is wrong with the answer to a bad deck, and the message.
+/// Faults of the answer to a bad deck, and the message.
 fn judge(deck: &BadDeck, command: &str) -> (Vec<String>, String) {
     let BadDeck(_, change, says) = deck;
     let scratch = good_deck();

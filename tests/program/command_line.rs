@@ -32,7 +32,7 @@ fn list_shows_what_decks_can_name() {
     assert!(text.contains("alm_contact_process") && !text.contains("SmallDisplacementElement2D4N"), "{text}");
 }
 
-/// Face pressures have opposite signs in the plane and in space: what pulls is named, and faces that are listed both ways round.
+/// Face pressures have opposite signs in the plane and in space: faces that pull are named, and faces that are listed both ways round.
 #[test]
 fn check_says_which_way_face_pressures_act() {
     let check = |folder: &Path| {
@@ -263,7 +263,7 @@ fn more_ranks_than_elements_are_bad_input() {
     }
 }
 
-/// The defaults of Kratos are laid under what a deck leaves out, never over what it says, by option or by the deck's own word.
+/// The defaults of Kratos apply where a deck gives none, never over its own values, by option or by the deck's own word.
 #[test]
 fn defaults_of_kratos_fill_in_what_a_deck_leaves_out() {
     let folder = case("contact_2d/matching");

@@ -33,7 +33,7 @@ fn process_of(formulation: &str, explicit: bool) -> (&'static str, &str) {
     found.unwrap_or_else(|| panic!("no process for {formulation}"))
 }
 
-/// What else a deck asks for.
+/// Further settings that a deck asks for.
 #[derive(Debug, Clone, Copy)]
 struct Wish {
     wanted: Use,

@@ -1,4 +1,4 @@
-//! `zelus diff`: what is equal, what differs, where and when.
+//! `zelus diff`: equal and different results, with place and time.
 
 use std::path::Path;
 

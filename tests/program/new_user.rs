@@ -1,5 +1,4 @@
-//! A new user's pin in a lug, pressed with friction in space, with one mistake after the other: what the program says leads to the
-//! right deck.
+//! A new user's pin in a lug, pressed with friction in space, with one mistake after the other: the messages lead to the right deck.
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -38,7 +37,7 @@ fn pin_in_lug(folder: &Path) {
     ];
     let joint = Joint::Frictional(0.3);
     Deck { mesh, joint, supports, pressure: 50.0, young: 210_000.0, steps: 4 }.write(folder, |deck| {
-        // What a user leaves out.
+        // A list that a user leaves out.
         for list in ["contact_settings", ""] {
             let settings = match list {
                 "" => &mut deck["solver_settings"],

@@ -1,4 +1,4 @@
-//! What a run must not destroy: its inputs, results of earlier runs, files of strangers, outputs of another run.
+//! Files that a run must not destroy: its inputs, results of earlier runs, files of strangers, outputs of another run.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -117,7 +117,8 @@ fn limits_of_files_are_told() {
     assert!(matches!(code, Some(2 | 4)) && said(&output).contains("File too large"), "{code:?}: {}", said(&output));
 }
 
-/// A disk with room for the probe of nothing is refused; one that fills up while a run writes ends it in words, and what was whole stays.
+/// A disk with room for the probe of nothing is refused; one that fills up while a run writes ends it with a message, and complete
+/// files stay.
 #[test]
 fn full_disks_are_told() {
     let run = |kilobytes: usize, steps: usize| {

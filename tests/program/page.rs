@@ -32,7 +32,7 @@ fn browser() -> Option<&'static str> {
     ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"].into_iter().find(runs)
 }
 
-/// What the browser made of a page, as text.
+/// Text of a page as the browser shows it.
 fn opened(browser: &str, page: &Path) -> String {
     let home = tempfile::tempdir().expect("a folder");
     let profile = format!("--user-data-dir={}", home.path().display());

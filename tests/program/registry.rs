@@ -1,4 +1,4 @@
-//! What holds for everything a deck can name.
+//! Rules for every object that a deck can name.
 
 use crate::support::{root, zelus};
 use std::collections::BTreeSet;
@@ -44,7 +44,7 @@ fn every_name_says_what_it_is_and_where_it_lives() {
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
-/// What `--like` lays under a deck must be settings that the object takes.
+/// Settings that `--like` gives must be settings that the object takes.
 #[test]
 fn defaults_of_other_programs_are_settings() {
     let mut problems = Vec::new();
@@ -135,7 +135,7 @@ fn names_of_the_reference_program_are_answered() {
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
-/// What `describe` shows as an example is taken by the object.
+/// The example of `describe` is taken by the object.
 #[test]
 fn examples_fit_the_settings_of_their_objects() {
     for (kind, entry) in entries().into_iter().filter(|(_, entry)| !entry.defaults.is_empty()) {

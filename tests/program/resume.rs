@@ -26,7 +26,7 @@ fn deck(folder: &str, steps: usize, change: impl Fn(&mut Value)) -> TempDir {
     scratch
 }
 
-/// Files of results by name: not the saved runs, which hold times of the clock, nor what was left half written.
+/// Files of results by name: not the saved runs, which hold times of the clock, nor incomplete files.
 fn results(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let is_result = |name: &Path| {
         let text = name.to_string_lossy();
@@ -122,7 +122,7 @@ fn a_signal_stops_after_the_step_and_says_how_to_go_on() {
             std::fs::remove_file(folder.path().join("report.json")).expect("the report");
             let output = zelus(folder.path(), &["run", DECK, "--resume"]);
             assert!(output.status.success(), "{}", support::said(&output));
-            assert!(support::said(&output).contains("goes on from ProjectParameters.rest"));
+            assert!(support::said(&output).contains("restart from ProjectParameters.rest"));
             assert_same(name, whole.path(), folder.path());
             stopped = true;
             break;

@@ -1,4 +1,4 @@
-//! The program ends in words: whatever is nested, however little it is given, and wherever numbers run over.
+//! Every failure ends with an error message: whatever is nested, however little it is given, and wherever numbers run over.
 
 use crate::support;
 use std::fmt::Write as _;

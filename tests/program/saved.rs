@@ -16,7 +16,7 @@ const DECK: &str = "ProjectParameters.json";
 /// Settings of the structure beside heat.
 const STRUCTURE: &str = "structural_solver_settings";
 
-/// A folder beside or below `tests`, what is changed in its deck, and how many steps it makes.
+/// A folder beside or below `tests`, the change of its deck, and how many steps it makes.
 struct Case {
     folder: &'static str,
     change: fn(&mut Value),
@@ -53,7 +53,7 @@ fn state(part: &ModelPart) -> Vec<(String, Vec<u64>)> {
     out
 }
 
-/// The report without what a clock and a machine make of it.
+/// The report without numbers that depend on clock and machine.
 fn report(simulation: &Simulation) -> Value {
     let mut report = serde_json::to_value(simulation.report()).expect("a report");
     for key in ["seconds", "threads", "memory"] {
@@ -215,7 +215,7 @@ fn materials_that_remember_and_paths_through_limits() {
     ]);
 }
 
-/// Heat alone, through contact, of friction, by turns with the structure, and what wears.
+/// Heat alone, through contact, of friction, in staggered coupling with the structure, and wear.
 const HEAT_AND_WEAR: [Case; 5] = [
     Case { folder: "../examples/transient_slab", change: |deck| ends(deck, 0.1), steps: 6 },
     case("../examples/bars_in_thermal_contact", 2),
@@ -293,7 +293,7 @@ fn other_decks_and_meshes_and_begun_runs_are_refused() {
     assert!(said.contains("no saved run") && said.contains("mesh.mdpa"), "{said}");
 }
 
-/// What was written to grow and is gone is named, instead of being begun anew without its beginning.
+/// An output file that a run would append to, and that is gone, is named, instead of being begun anew without its beginning.
 #[test]
 fn files_of_output_must_be_there() {
     let scratch = scratch_copy(&root().join("tests/cases/contact_2d/friction_slide"));
@@ -360,7 +360,7 @@ fn joined(of_ranks: Vec<Numbers>) -> Numbers {
     all
 }
 
-/// The largest difference of two runs over the largest number, by name; of what both have.
+/// The largest difference of two runs over the largest number, by name; of quantities that both have.
 fn differences(a: &Numbers, b: &Numbers) -> Vec<(String, f64)> {
     let difference = |(name, values): (&String, &BTreeMap<usize, Vec<f64>>)| {
         let other = &b[name];

@@ -1,4 +1,4 @@
-//! `--set` takes the place of what a deck says, and is checked as if the deck said it.
+//! `--set` replaces the values of a deck, and is checked as if they stood in the deck.
 
 use crate::support::{read_json, root, said, scratch_copy, zelus};
 

@@ -100,7 +100,7 @@ fn processes_of_the_caller_act_and_come_to_their_end() {
     assert!(displacement(&simulation).iter().any(|u| *u != 0.0), "fields can be read at the end");
 }
 
-/// What is written to a field is what the next step begins with: a start at the answer needs no iteration but the one that sees it.
+/// Values written to a field are the start of the next step: a start at the solution needs only the iteration that detects it.
 #[test]
 fn the_next_step_begins_with_what_was_written() {
     let mut known = simulation(1, 1.0);

@@ -187,7 +187,7 @@ fn what_holds_a_body_is_said_before_the_run() {
     assert!(said.contains("note[held-by-friction]") && said.contains("part Upper"), "{said}");
     // A body without contact, which the solver finds, too, and says where it is.
     let (_, said) = run(without("structural/self_weight", 0).path(), "check");
-    assert!(said.contains("warning[held-by-nothing]") && said.contains("6 rigid motions"), "{said}");
+    assert!(said.contains("warning[held-by-nothing]") && said.contains("6 rigid-body modes"), "{said}");
     let (code, said) = run(without("structural/self_weight", 0).path(), "run");
     assert_eq!(code, Some(4), "{said}");
     assert!(said.contains("; what moves is at node ") && said.contains(" of part Body"), "{said}");
@@ -239,7 +239,7 @@ fn facets_without_area_are_named() {
     );
 }
 
-/// What several ranks say holds a body is what one says.
+/// Several ranks report the same restraint of a body as one.
 #[test]
 fn ranks_together_say_what_holds_a_body() {
     for (name, keep) in [
@@ -266,7 +266,7 @@ fn ranks_together_say_what_holds_a_body() {
     }
 }
 
-/// Hears what holds bodies.
+/// Collects the notes on restraint of bodies.
 #[derive(Default)]
 struct Held(Vec<String>);
 

@@ -1,4 +1,4 @@
-//! What a picture shows where its deck names nothing, and what is said of names in a wrong list.
+//! Contents of a picture where its deck names nothing, and messages about names in a wrong list.
 
 use std::path::Path;
 
@@ -53,7 +53,7 @@ fn a_bare_output_process_writes_what_runs_are_looked_at_for() {
     for (at, state) in status.iter().enumerate() {
         assert!([-1.0, 0.0, 2.0].contains(state) && (*state == 2.0 || pressure[at] == 0.0), "{state} at {at}");
     }
-    // what presses the roller up presses the block down, and is the load
+    // the vertical force on the roller and that on the block are opposite, and equal the load
     let vertical: Vec<f64> = values(force).chunks(3).map(|force| force[1]).collect();
     let up: f64 = vertical.iter().filter(|force| **force > 0.0).sum();
     let total: f64 = vertical.iter().sum();
@@ -67,7 +67,7 @@ fn a_bare_output_process_writes_what_runs_are_looked_at_for() {
     }
 }
 
-/// With friction too, force is traction times area at each slave node, and what slaves feel masters feel the other way.
+/// With friction too, force is traction times area at each slave node, and forces on masters are opposite to those on slaves.
 #[test]
 fn forces_of_friction_are_tractions_times_areas() {
     for case in ["friction_slide", "friction_penalty_stick"] {
@@ -137,7 +137,7 @@ fn a_name_in_the_wrong_list_is_refused_with_the_right_one() {
     }
 }
 
-/// What a run leaves that writes one file: the bytes that `zelus convert` makes of its pictures, be the run stopped between or not.
+/// A run with one file writes the bytes that `zelus convert` makes of its pictures, be the run stopped between or not.
 #[test]
 fn one_file_holds_all_steps() {
     let deck = |one_file: bool| {

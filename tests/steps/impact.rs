@@ -18,7 +18,7 @@ fn solve(boxes: &Boxes, write: impl Fn(&std::path::Path)) -> Results {
     results.unwrap_or_else(|| panic!("{said}"))
 }
 
-/// Results, where the run has ended well, and what the program has said.
+/// Results, where the run has ended well, and the output of the program.
 fn attempt(boxes: &Boxes, write: impl Fn(&std::path::Path)) -> (Option<Results>, String) {
     let folder = tempfile::tempdir().expect("a scratch folder");
     write(folder.path());
@@ -77,7 +77,7 @@ fn scheme(name: &str) -> Value {
     json!({ "scheme_type": name })
 }
 
-/// ANALYTIC: waves run up the bar and back in 2L/c, and it leaves as fast as it came. Schemes that damp lose what waves have in
+/// ANALYTIC: waves run up the bar and back in 2L/c, and it leaves as fast as it came. Schemes with damping lose the energy of waves in
 /// frequencies they do not resolve; none gains.
 #[test]
 fn a_bar_rebounds_with_its_energy_after_twice_the_time_of_a_wave() {
@@ -137,7 +137,7 @@ fn energy_stays_through_twenty_rebounds() {
     }
 }
 
-/// What makes the difference: with their own mass nodes in contact jump, and Newmark's scheme makes energy of it.
+/// The difference without redistribution: with their own mass nodes in contact jump, and Newmark's scheme makes energy of it.
 #[test]
 fn without_redistribution_energy_grows() {
     let bar = Bar::new(50, 1);
@@ -149,7 +149,7 @@ fn without_redistribution_energy_grows() {
     assert!(end > 2.0 * begin, "{}", end / begin);
 }
 
-/// Two free blocks of unlike meshes, one on the skew into the other: what one loses in momentum the other gains.
+/// Two free blocks of unlike meshes, one on the skew into the other: the momentum that one loses the other gains.
 #[test]
 fn free_blocks_hand_on_their_momentum() {
     for dimension in [2, 3] {
@@ -284,7 +284,7 @@ fn friction_makes_no_energy_where_a_thrown_block_rolls() {
     }
 }
 
-/// A block turned by `angle` that is thrown on a coarser ground, which is the slave; the results and what the program says.
+/// A block rotated by `angle` that is thrown on a coarser ground, which is the slave; the results and the output of the program.
 fn coarse_slave(angle: f64, settings: &Value) -> (Boxes, (Option<Results>, String)) {
     let boxes = Boxes::thrown_on_coarse_ground(angle);
     let outcome = attempt(&boxes, |folder| boxes.write_thrown(folder, [1.0, 0.2, 1.0], 128.0, settings));

@@ -1,4 +1,4 @@
-//! Steps: time integration, stages, cuts, what Newton's iteration is helped by, impacts.
+//! Steps: time integration, stages, cuts, remedies of Newton's iteration, impacts.
 
 #[path = "../support/boxes.rs"]
 mod boxes;

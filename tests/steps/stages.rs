@@ -1,4 +1,4 @@
-//! What goes on from stage to stage: fields, multipliers, states of contact; what is refused between stages.
+//! Data that pass from stage to stage: fields, multipliers, states of contact; and changes between stages that are refused.
 //!
 //! Plastic strain is in `tests/cases/structural/stages_of_plastic_flow`.
 
@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 const DECK: &str = "ProjectParameters.json";
 
-/// The deck as two stages, the second on what the first leaves.
+/// The deck as two stages, the second on the state of the first.
 fn in_two_stages(deck: &Value) -> Value {
     let stage = |number: i32| {
         let mut settings = deck.clone();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 const DECK: &str = "ProjectParameters.json";
 
-/// Runs a changed deck: exit code, what it said, accepted times, number of attempts, result files.
+/// Runs a changed deck: exit code, output, accepted times, number of attempts, result files.
 struct Run {
     code: Option<i32>,
     text: String,
@@ -58,7 +58,7 @@ fn assert_same_bits(cut: &Run, given: &Run) {
     }
 }
 
-/// A deck that gives the lengths found by cutting ends in the same bits: what failed attempts changed is put back.
+/// A deck that gives the lengths found by cutting ends with the same bits: changes by failed attempts are put back.
 #[test]
 fn the_state_before_a_failed_attempt_comes_back_to_the_bit() {
     let folder = root().join("tests/decks/oscillator");
@@ -108,7 +108,7 @@ fn contact_settings_say_how_steps_are_cut() {
     let cut = run(&folder, &[few, (DECK, "\"mortar_type\"", splits)]);
     assert_eq!((cut.code, cut.attempts), (Some(3), 2), "{}", cut.text);
     assert!(
-        cut.text.contains("retried with 1/4 of the step") && cut.text.contains("1 cuts of the step by 4"),
+        cut.text.contains("retried with 1/4 of the step") && cut.text.contains("1 cut of the step by 4"),
         "{}",
         cut.text
     );

@@ -378,7 +378,7 @@ fn block_energy(results: &Results, step: usize, explicit: bool) -> f64 {
     energy
 }
 
-/// No force does work but that of the penalty, which is elastic: what energy is lost or won, time integration makes.
+/// Only the force of the penalty does work, and it is elastic: any change of energy is an error of time integration.
 #[test]
 fn a_block_bounces_with_an_energy_error_that_falls_with_the_step() {
     for explicit in [false, true] {

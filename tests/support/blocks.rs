@@ -10,7 +10,7 @@ use zelus_core::geometry::{Shape, shape_functions};
 /// A point or a displacement.
 pub type Vec3 = [f64; 3];
 
-/// A mesh of quadrilaterals or hexahedra, or of what they are cut into, with its parts.
+/// A mesh of quadrilaterals or hexahedra, or of the simplices they are cut into, with its parts.
 #[derive(Default)]
 pub struct Mesh {
     /// Places of the nodes; node n is number n + 1.
@@ -202,7 +202,7 @@ impl Mesh {
     }
 }
 
-/// What acts between the blocks.
+/// Connection between the blocks.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Joint {
     /// Contact without friction.
@@ -217,7 +217,7 @@ pub enum Joint {
 pub struct Deck {
     /// The mesh.
     pub mesh: Mesh,
-    /// What acts between the blocks.
+    /// Connection between the blocks.
     pub joint: Joint,
     /// Prescribed components of parts: numbers or expressions, null where free.
     pub supports: Vec<(String, [Value; 3])>,

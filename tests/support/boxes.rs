@@ -1,4 +1,4 @@
-//! Boxes of equal elements that move and touch: their mesh, their deck and what their motion holds.
+//! Boxes of equal elements that move and touch: their mesh, their deck and the invariants of their motion.
 #![allow(dead_code, reason = "each test binary uses its part")]
 
 use std::collections::BTreeMap;
@@ -240,7 +240,7 @@ impl Boxes {
         write("ProjectParameters.json", &deck);
     }
 
-    /// What a body holds at a step, from the displacements and velocities that were written; the initial state for `None`.
+    /// State of a body at a step, from the displacements and velocities that were written; the initial state for `None`.
     pub fn state(&self, body: &str, material: [f64; 3], results: &Results, step: Option<usize>) -> State {
         let field = |name: &str, initial: &dyn Fn(usize) -> [f64; 3]| -> Vec<[f64; 3]> {
             let Some(step) = step else { return (0..self.nodes.len()).map(initial).collect() };

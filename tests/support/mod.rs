@@ -1,4 +1,4 @@
-//! What the system tests share: scratch copies of decks, runs of the program, and reading of its results.
+//! Helpers of the system tests: scratch copies of decks, runs of the program, and reading of its results.
 #![allow(dead_code, reason = "each test binary uses its part")]
 
 use serde_json::Value;

@@ -281,7 +281,7 @@ fn formulations() -> Vec<(&'static str, &'static Formulation)> {
     found.into_iter().chain(by_node).collect()
 }
 
-/// Unknowns of pairs of which not all derivatives are looked at in each state.
+/// Unknowns of pairs of which not all derivatives are checked in each state.
 const LARGE: usize = 50;
 
 const INACTIVE: (bool, bool) = (false, false);
@@ -379,7 +379,7 @@ fn pairs_push_back_what_is_pushed_and_turn_with_the_bodies() {
             .collect();
         expected.extend(&rhs[turned_rows..]);
         let error = difference(&expected, &after);
-        assert!(error <= 1e-8 * size(rhs).max(1.0), "{name}: off by {error:e} after a rigid motion");
+        assert!(error <= 1e-8 * size(rhs).max(1.0), "{name}: off by {error:e} after a rigid-body motion");
     });
 }
 

@@ -151,7 +151,7 @@ impl Scene {
         write(DECK, deck.to_string());
     }
 
-    /// Runs the deck; exit code and what is said, and of the last step the fields by node.
+    /// Runs the deck; returns the exit code, the output, and the fields of the last step by node.
     pub fn run(&self) -> (Option<i32>, String, Fields) {
         let folder = tempfile::tempdir().expect("a scratch folder");
         self.write(folder.path());

@@ -46,8 +46,8 @@ pub fn cell(shape: Shape, space: usize, amount: f64, random: &mut Random) -> Vec
     shape.cell().points.iter().map(place).collect()
 }
 
-/// Properties of every specimen. Bodies have the temperature at which laws that expand are without strain. Yielding begins far below the strains that are looked at: differences taken across its
-/// beginning are no derivatives.
+/// Properties of every specimen. Bodies have the temperature at which laws that expand are without strain. Yielding begins far below
+/// the strains of the tests: differences taken across its beginning are no derivatives.
 const USUAL: [(&str, f64); 10] = [
     ("REFERENCE_TEMPERATURE", 0.0),
     ("CONDUCTIVITY", 0.7),
@@ -92,7 +92,7 @@ impl Specimen {
         for (name, value) in USUAL {
             values.insert(name.to_owned(), value);
         }
-        // What has lost nearly all stiffness has no digits left to compare.
+        // A specimen that has lost nearly all stiffness has no digits left to compare.
         if law.is_some_and(|law| law.contains("Damage")) {
             values.insert("YIELD_STRESS".to_owned(), 0.3);
         }

@@ -1,4 +1,4 @@
-//! Ranks that are threads of this process: what they send passes through one board that all of them reach.
+//! Ranks that are threads of this process: messages pass through one board that all of them reach.
 
 use std::any::Any;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -33,7 +33,7 @@ struct ThreadRank {
     group: Arc<Group>,
 }
 
-/// As many ranks as threads: what `work` gives on each of them.
+/// As many ranks as threads: the results of `work` on each of them.
 pub fn on_threads<T: Send>(count: usize, work: impl Fn(Ranks) -> T + Sync) -> Vec<T> {
     let messages = (0..count).map(|_| (0..count).map(|_| None).collect()).collect();
     let board = Mutex::new(Board { messages, ..Board::default() });

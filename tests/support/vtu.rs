@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// Components and values of each array, by name.
 pub type Columns = BTreeMap<String, (usize, Vec<f64>)>;
 
-/// Arrays over points, their positions among them, and arrays over cells, what they consist of among them.
+/// Arrays over points, their positions among them, and arrays over cells, their connectivity among them.
 pub fn read_vtu(path: &Path) -> (Columns, Columns) {
     let bytes = std::fs::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
     let mark = b"<AppendedData encoding=\"raw\">\n_";

@@ -36,8 +36,8 @@ def run(n, family="ALM", courant=1.0, dynamic=None):
 
 CASE = Case(
     "Bar between two walls", "energy of a bar that bounces without loss; balance of energy", "ANALYTIC",
-    "Energy stays. Rebounds are fewer than those of a rigid bar: the gap is as wide as the bar swings, and what the mesh makes of the "
-    "sharp front goes on swinging, so that the centre is slower or faster after each.",
+    "Energy is conserved. Rebounds are fewer than those of a rigid bar: the gap is as wide as the bar oscillates. The dispersed wave front "
+    "of the mesh keeps oscillating, so the centre is slower or faster after each rebound.",
     [Quantity("largest energy", 1.0, 0.02, order=False), Quantity("energy at the end", 1.0, {"": 0.02, "double steps": 0.03}, order=False),
      Quantity("rebounds", TIMES, (0.5, 0.3), order=False)],
     (10, 20), run, size=lambda n: 1 / n,

@@ -65,7 +65,7 @@ def run(n, family="ALM", slave="outer", degrees=0.0, held=False, friction=None, 
 
 
 def hold(m, ring, side):
-    """Holds a ring against rigid motion at the four nodes of a rim on the axes, each along the rim."""
+    """Restrains the rigid-body modes of a ring at the four nodes of a rim on the axes, each along the rim."""
     nodes = m.mesh.nodes
     radius = math.hypot(*nodes[ring.side_nodes[side][0]])
     for axis, (cx, cy) in (("y", (radius, 0.0)), ("y", (-radius, 0.0)), ("x", (0.0, radius)), ("x", (0.0, -radius))):

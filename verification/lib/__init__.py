@@ -1,4 +1,4 @@
-"""What the cases of the atlas share: meshes, decks, runs, pictures. Meshes and deck files come from the cases of the tests."""
+"""Helpers of the cases of the atlas: meshes, decks, runs, pictures. Meshes and deck files come from the cases of the tests."""
 import os, sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))

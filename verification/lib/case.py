@@ -1,4 +1,4 @@
-"""What a case says of itself: quantities with their published values, meshes, variants."""
+"""Description of a case: quantities with their published values, meshes, variants."""
 
 
 class Quantity:
@@ -27,7 +27,7 @@ class Quantity:
 
 
 class Outcome:
-    """What one run gives: values by quantity, and what may be drawn."""
+    """Outcome of one run: values by quantity, and curves to draw."""
 
     def __init__(self, solution, values, curves=None, labels=None):
         self.values, self.curves, self.labels = values, curves, labels

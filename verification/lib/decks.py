@@ -5,7 +5,7 @@ from . import ROOT, solution
 
 
 class Report:
-    """What an outcome wants of a run."""
+    """Numbers of a run for an outcome."""
 
     def __init__(self, report):
         self.steps, self.warnings, self.model = report["steps"], [], None

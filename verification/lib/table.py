@@ -109,7 +109,8 @@ HEAD = """# Verification atlas
 
 For users who judge the accuracy of zelus. After this page you know errors, orders of convergence, iterations and cuts of published problems.
 
-The problems are run with the default settings of zelus, except for the variant that a row names. This page is written by
+The problems are run with the default settings of zelus, except for the variant that a row names. Validation against experiments is not
+part of it. This page is written by
 
     cargo build --release
     python3 verification/run.py --write
@@ -121,7 +122,8 @@ cases with that text in their name. A quick part (the coarsest meshes of some va
 
 *Published* is the reference; its tag is ANALYTIC (closed form), EXTERNAL (another program or a published table) or
 REGRESSION (an earlier result of this program). *Error* is that of the finest mesh, relative to the published value or to the unit in which
-the row is given; *order* the slope of log error over log mesh size from the first to the last mesh, where the error is a discretisation error.
+the row is given. *Order* is the slope of log error over log mesh size from the first to the last mesh, where the error is a discretisation
+error.
 *Iterations* and *cuts* are those of the whole run on the finest mesh. A row passes when every mesh is within its tolerance.
 """
 

@@ -46,9 +46,9 @@ CASE = Case(
     "Roller on a block (NAFEMS)",
     "A. Konter, Advanced Finite Element Contact Benchmarks, NAFEMS R0094 (2006), benchmark 1: a = 6.2146 mm, p₀ = 3585.4 N/mm²",
     "EXTERNAL",
-    "The published values are Hertz' for half-planes at vanishing strain. At the whole load aluminium strains by 2.7 % along the "
-    "surface, so that the contact, measured where it is, is narrower by half of that; a hundredth of the load (values times 10) shows "
-    "that nothing else is missing. Friction between unlike materials narrows the contact a little more.",
+    "The published values are Hertz' for half-planes at vanishing strain. At the full load aluminium strains by 2.7 % along the "
+    "surface. So the contact, measured in the deformed state, is narrower by half of that. A hundredth of the load (values times 10) "
+    "shows that there is no other difference. Friction between unlike materials narrows the contact a little more.",
     [Quantity("half-width", 6.2146, {"": 0.02, "μ = 0.1": 0.03}, "mm"), Quantity("peak pressure", 3585.4, {"": 0.02, "μ = 0.1": 0.03}, "N/mm²"),
      Quantity("load", FORCE, 1e-4, "N/mm", order=False)],
     (1.0, 0.5, 0.25), run, size=lambda h: h,

@@ -45,7 +45,7 @@ def at(k, r):
 CASE = Case(
     "Press fit (Lamé)", "G. Lamé 1852; Timoshenko and Goodier, Theory of Elasticity, § 28", "ANALYTIC",
     "The facets of non-matching polygons overlap by the interference and their sagittas, of the order of the mesh size squared over the "
-    "interference; the interference itself is half a hundredth of the radius, which Lamé neglects.",
+    "interference. The interference itself is half a hundredth of the radius, which Lamé neglects.",
     [Quantity("pressure", -STRESS(0, MIDDLE), (0.2, 0.06, 0.02)), Quantity("widening of the rim", at(1, OUTER), (0.2, 0.06, 0.02)),
      Quantity("narrowing of the bore", at(0, INNER), (0.2, 0.06, 0.02)), Quantity("scatter of the pressure", 0.0, (1.2, 0.8, 0.4), scale=1.0)],
     (8, 16, 32), run, size=lambda n: 1 / n,

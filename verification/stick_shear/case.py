@@ -36,7 +36,7 @@ def run(n, family="ALM frictional", dim=2, slave="upper", shape=None, turn=0.0, 
 CASE = Case(
     "Sheared blocks that stick", "uniform pressure and shear; the ratio of shear and pressure is 0.8 μ", "ANALYTIC",
     "Displacement is affine across the interface. Loads count on the undeformed and contact on the present area, which differ by strains "
-    "of 1e-3; a penalty gives way by its own share.",
+    "of 1e-3; a penalty adds its elastic slip.",
     [Quantity("strain error", 0.0, {"": 2e-3}, scale=1.0, order=False), Quantity("slip", 0.0, {"": 1e-3}, scale=1.0, order=False)],
     (2, 4), run, size=lambda n: 1 / n,
     variants={"ALM": {}, "lower as slave": {"slave": "lower"}, "penalty": {"family": "penalty frictional"}, "MPC": {"family": "MPC frictional"},

@@ -5,7 +5,7 @@
 
 use serde::Deserialize;
 
-/// Which of gap and multiplier decides whether a constraint acts.
+/// Criterion by which a constraint acts: gap or multiplier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(try_from = "u8")]
 pub enum ActiveSetStrategy {

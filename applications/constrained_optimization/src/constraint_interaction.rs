@@ -1,4 +1,4 @@
-//! The constraints in the Newton loop: which of them act, and what a method changes between iterates.
+//! The constraints in the Newton loop: their active set, and the changes of a method between iterates.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub struct ConstraintInteraction<M: Method> {
     saved: Vec<Vec<ConstraintState>>,
 }
 
-/// What constraints remember between steps, as it stands in a saved run: their states, by block.
+/// State of the constraints between steps, as it stands in a saved run: by block.
 #[derive(Serialize, Deserialize)]
 struct SavedConstraints(Vec<Vec<ConstraintState>>);
 
@@ -37,7 +37,7 @@ impl<M: Method> ConstraintInteraction<M> {
         Self { conditions, method: Arc::new(method), blocks: Vec::new(), saved: Vec::new() }
     }
 
-    /// Brings gaps and multipliers of the states up to date and lets `change` act on each; writes what criteria and output
+    /// Brings gaps and multipliers of the states up to date and lets `change` act on each; writes the values that criteria and output
     /// read.
     fn update(&mut self, part: &mut ModelPart, mut change: impl FnMut(&M, &Constraint, &mut ConstraintState)) {
         for block in &mut self.blocks {

@@ -1,4 +1,4 @@
-//! Conditions that say what is allowed: a wall, x ≥ w, or a linear constraint, a·x + b ≤ 0.
+//! Conditions that bound positions: a wall, x ≥ w, or a linear constraint, a·x + b ≤ 0.
 //!
 //! The last node of a condition stands for the constraint itself and carries its multiplier. The position w of a wall is
 //! the X coordinate of that node. The conditions add nothing to the functional by themselves: a method does.
@@ -38,7 +38,7 @@ pub struct Constraint {
 }
 
 impl Constraint {
-    /// Those conditions of the part at `path` that are constraints; the part is marked as one on which a method imposes them.
+    /// Conditions of the part at `path` that are constraints; the part is marked as one on which a method imposes them.
     ///
     /// # Errors
     /// A path without a part.

@@ -1,4 +1,4 @@
-//! What a method is: a term of the functional for each constraint, and when it acts.
+//! The trait of methods: a term of the functional for each constraint, and when it acts.
 
 use serde::{Deserialize, Serialize};
 use zelus_contact_structural_mechanics::adaptation::adapted_augmented_lagrangian;
@@ -10,7 +10,7 @@ use crate::variables::{CONSTRAINT_MULTIPLIER, SECOND_CONSTRAINT_MULTIPLIER};
 /// The unknowns a method can add to a constraint, in this order.
 pub const MULTIPLIERS: [&Variable<f64>; 2] = [&CONSTRAINT_MULTIPLIER, &SECOND_CONSTRAINT_MULTIPLIER];
 
-/// What a constraint remembers between iterates, in the signs of g ≥ 0 and λ ≤ 0.
+/// State of a constraint between iterates, in the signs of g ≥ 0 and λ ≤ 0.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ConstraintState {
     /// Whether it acts.

@@ -15,7 +15,7 @@ pub struct Use {
     pub arc_length: bool,
 }
 
-/// Why a use is refused, and what to do instead.
+/// Reason why a use is refused, and the replacement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Refusal {
     /// The reason.
@@ -24,7 +24,7 @@ pub struct Refusal {
     pub remedy: &'static str,
 }
 
-/// A rule: when it holds, and what is then refused.
+/// A rule: its condition, and the refusal.
 type Rule = (fn(&Formulation, Use) -> bool, Refusal);
 
 /// Everything that is not listed runs: every formulation on every pair of shapes, in the plane, in space and (in the plane)

@@ -4,11 +4,11 @@
 //! numbers of the nodes and on the order in which ranks add up. A decision that hangs on them makes the iteration go another
 //! way each time. So, wherever contact compares:
 //!
-//! 1. what is compared has one unit. Gaps and slips count over the area of their node, which makes them lengths, and stand
-//!    against tractions with a stiffness by length;
+//! 1. compared quantities have one unit. Gaps and slips count over the area of their node, which makes them lengths, and stand against
+//!    tractions with a stiffness by length;
 //! 2. lengths within the round-off of positions are none, and tractions differ if they do so by more than the share of the
 //!    largest one in contact that a linear solve leaves open;
-//! 3. what does not differ decides nothing: the present state stays.
+//! 3. differences below the tolerance decide nothing: the present state stays.
 
 use serde::{Deserialize, Serialize};
 use zelus_core::vector3::norm;

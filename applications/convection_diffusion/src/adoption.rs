@@ -1,4 +1,4 @@
-//! What a solver of heat makes of a mesh: its own elements and faces, turned the right way, and materials at nodes.
+//! Mesh of a solver of heat: its own elements and faces, turned the right way, and materials at nodes.
 
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
 use zelus_core::entities::find_kind;
@@ -89,7 +89,7 @@ fn turn(table: &mut EntityTable, positions: &[[f64; 3]], space: usize) -> usize 
     count
 }
 
-/// Warns of materials that do not say how much heat is stored, and of what then `follows`.
+/// Warns of materials without heat storage, and of the consequence, `follows`.
 pub fn warn_of_no_storage(part: &ModelPart, follows: &str, report: &mut Report) {
     let columns = Columns::of(part);
     let mut ids = part.elements.properties.clone();

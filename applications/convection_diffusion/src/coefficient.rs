@@ -11,7 +11,7 @@ pub struct Coefficient {
     own: Own,
 }
 
-/// What the material of the element says.
+/// Values from the material of the element.
 #[derive(Debug, Clone)]
 enum Own {
     Constant(f64),
@@ -23,7 +23,7 @@ enum Own {
 /// A coefficient in one element.
 #[derive(Clone, Copy)]
 pub enum Local<'a, const NODES: usize> {
-    /// That of its material.
+    /// Coefficient of its material.
     Own(&'a Coefficient),
     /// Values at its nodes.
     Nodal([f64; NODES]),
@@ -65,8 +65,8 @@ impl Coefficient {
         matches!(self.own, Own::Missing)
     }
 
-    /// What holds in one element: values of nodes where a process has set one that differs from what materials wrote there, or
-    /// where the material says nothing.
+    /// The coefficient in one element: values of nodes where a process has set one that differs from the material's, or where the
+    /// material gives none.
     pub fn in_element<const NODES: usize>(
         &self,
         entity: &Gather<'_, NODES>,
@@ -89,7 +89,7 @@ impl Coefficient {
         Local::Nodal(std::array::from_fn(value))
     }
 
-    /// Its name, where neither the material nor a process says what it is in an element.
+    /// Its name, where neither the material nor a process gives its value in an element.
     pub fn unknown_in<const NODES: usize>(&self, local: &Local<'_, NODES>) -> Option<&'static str> {
         let is_zero = matches!(local, Local::Nodal(values) if values.iter().all(|value| *value == 0.0));
         self.column.filter(|_| self.is_missing() && (is_zero || matches!(local, Local::Own(_))))

@@ -1,4 +1,4 @@
-//! Which columns of the nodes the balance of heat reads: `convection_diffusion_variables`.
+//! Columns of the nodes that the balance of heat reads: `convection_diffusion_variables`.
 
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{Gather, StepView};
@@ -24,7 +24,7 @@ const USUAL: [(&str, &str, bool); 8] = [
 /// Names of the columns; `None` where the deck switches one off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Columns {
-    /// What is solved for.
+    /// Unknown.
     pub unknown: ScalarVariable,
     /// Mass per volume; 1 where switched off.
     pub density: Option<&'static str>,
@@ -43,7 +43,7 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// Those of a part; the usual ones where no solver has named others.
+    /// Columns of a part; the default ones where no solver has named others.
     pub fn of(part: &ModelPart) -> Self {
         let [unknown, density, diffusion, specific_heat, volume_source, surface_source, velocity, mesh_velocity] =
             USUAL.map(|(key, usual, _)| {

@@ -64,7 +64,7 @@ fn adopt(settings: &Settings, folder: &Path, part: &mut ModelPart, report: &mut 
     Ok(())
 }
 
-/// Properties of one id are one material: what the materials of heat, which come later, say of it counts.
+/// Properties of one id are one material: the values of the materials of heat, which come later, count.
 fn complete(own: &mut Properties, of_heat: &Properties, report: &mut Report) {
     for (name, value) in &of_heat.values {
         let Some(given) = own.values.get_mut(name).filter(|given| *given != value) else { continue };
@@ -156,7 +156,7 @@ fn around(
 
 /// Heat first, then the structure.
 struct Coupled {
-    /// Shared with what looks again while the structure iterates.
+    /// Shared with the interaction that solves for heat again while the structure iterates.
     heat: Arc<Mutex<Heat>>,
     structure: Box<dyn SolutionStrategy>,
     /// How both are solved.
@@ -179,7 +179,7 @@ impl Coupled {
     ) -> Result<StepRecord> {
         let sweeps = Sweeps::new(self.heat.clone(), goal, part, start);
         if system.interactions.iter_mut().any(|interaction| interaction.active_set().is_some()) {
-            // What contact keeps of the step must not begin anew: its iteration goes on.
+            // The contact state of the step must not begin anew: its iteration goes on.
             system.interactions.push(Box::new(sweeps));
             let record = self.structure.solve_step(part, system, monitor);
             system.interactions.pop();

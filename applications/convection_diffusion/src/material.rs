@@ -1,4 +1,4 @@
-//! What the elements of one block are made of, as heat sees it.
+//! Thermal material of the elements of one block.
 
 use zelus_core::entities::{BlockRequest, Gather, StepView};
 use zelus_core::model::Properties;
@@ -18,7 +18,7 @@ pub struct Material {
 }
 
 impl Material {
-    /// That of a block.
+    /// Material of a block.
     pub fn of(request: &BlockRequest<'_>, columns: &Columns) -> Self {
         let properties = properties_of(request);
         let coefficient = |column, off| Coefficient::new(column, properties, columns.unknown.column, off);

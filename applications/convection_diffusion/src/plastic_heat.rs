@@ -11,7 +11,7 @@ use zelus_structural_mechanics::laws::PLASTIC_WORK;
 use crate::adoption::properties_of_heat;
 use crate::elements::PLASTIC_HEAT_POWER;
 
-/// Share of plastic work that becomes heat, with what brings it to the units of heat, among the properties of heat.
+/// Share of plastic work that becomes heat, times the factor to the units of heat, among the properties of heat.
 const SHARE: &str = "TAYLOR_QUINNEY_COEFFICIENT";
 
 /// Heat of plastic flow.
@@ -21,7 +21,7 @@ pub(crate) struct PlasticHeat {
 }
 
 impl PlasticHeat {
-    /// That of the materials of heat in a part, which gets its column.
+    /// Plastic heat by the materials of heat in a part, which gets its column.
     pub(crate) fn of(part: &mut ModelPart) -> Self {
         let acts =
             part.properties.values().any(|properties| properties.number(SHARE).is_some_and(|share| share != 0.0));

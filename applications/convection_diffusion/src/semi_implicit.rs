@@ -1,4 +1,4 @@
-//! Semi-implicit steps of heat: temperatures are carried along first, then conducted.
+//! Semi-implicit steps of heat: semi-Lagrangian advection of temperatures, then conduction.
 
 use zelus_core::assembly::DofTable;
 use zelus_core::diagnostics::Result;
@@ -12,7 +12,7 @@ use crate::variables::PROJECTED_SCALAR1;
 
 /// Name of the scheme.
 pub const SEMI_IMPLICIT: &str = "semi_implicit_convection_diffusion";
-/// Elements of what follows upon the transport.
+/// Elements of the step after advection.
 pub const DIFFUSION: &str = "EulerianDiffusion";
 
 struct CarriedThenConducted {
@@ -60,7 +60,7 @@ impl Scheme for CarriedThenConducted {
 }
 
 register! { SchemeEntry SEMI_IMPLICIT,
-    about: "heat is carried along the paths of points, back and forth against the error, then conducted",
+    about: "semi-Lagrangian advection of heat with back and forth error compensation (BFECC), then implicit conduction",
     source: "T* = T(x − ∫ v dt); ρc (T − T*)/Δt = ∇·(k ∇(T + T*)/2) + Q",
     build: SchemeFactory::Implicit(|request| {
         let settings = request.settings;

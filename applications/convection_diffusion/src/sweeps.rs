@@ -1,9 +1,10 @@
-//! Heat and a structure by turns within a step, until the temperatures stay: `coupling_settings`, "staggered".
+//! Staggered coupling of heat and a structure within a step, until the temperatures stay: `coupling_settings`, "staggered".
 //!
-//! A sweep solves for heat from the start of the step, on the mesh and with the contact that the structure has just found: T̃ = H(S(T)),
-//! where T are the temperatures that the structure was solved with. The step ends where T̃ differs from T by no more than the tolerance
-//! times the spread of temperatures (the largest less the smallest, at both ends of the step); it is then T̃ that counts. Else the structure
-//! goes on with what Anderson's acceleration makes of the last sweeps: with the residuals r = T̃ - T, and Δ their differences and those of T̃,
+//! A sweep solves for heat from the start of the step, on the mesh and with the contact that the structure has just found: T̃ =
+//! H(S(T)), where T are the temperatures that the structure was solved with. The step ends where T̃ differs from T by no more than the
+//! tolerance times the spread of temperatures (the largest less the smallest, at both ends of the step); it is then T̃ that counts.
+//! Else the structure continues with the temperatures of Anderson's acceleration over the last sweeps: with the residuals r = T̃ - T,
+//! and Δ their differences and those of T̃,
 //!
 //! T' = T̃ - Σ γ_j ΔT̃_j, γ such that |r - Σ γ_j Δr_j| is least
 //!
@@ -40,7 +41,7 @@ pub(crate) struct Sweeps {
     goal: Goal,
     /// Temperatures at the start of the step, prescribed ones as they are at its end.
     start: Vec<f64>,
-    /// Those that the structure was last solved with.
+    /// Temperatures with which the structure was last solved.
     taken: Vec<f64>,
     /// T̃ and T̃ - T of the last sweeps, the latest at the end.
     past: Vec<[Vec<f64>; 2]>,
@@ -82,7 +83,7 @@ impl Sweeps {
         if self.since >= self.goal.most {
             return Ok(Outer::Failed(format!(
                 "heat and structure do not agree after {} sweeps: temperatures still change by {largest:.1e} of {spread:.3e}; \
-                 \"coupling_settings\": {{\"strategy\": \"monolithic\"}} finds both in one iteration, if anything is at rest there; \
+                 \"coupling_settings\": {{\"strategy\": \"monolithic\"}} finds both in one iteration, if there is a steady state; \
                  \"sequential\" solves for each once a step",
                 self.since
             )));
@@ -137,7 +138,7 @@ fn accelerated(part: &ModelPart, past: &[[Vec<f64>; 2]]) -> Vec<f64> {
 
 impl Interaction for Sweeps {
     fn name(&self) -> &str {
-        "heat and structure by turns"
+        "staggered heat and structure"
     }
 
     fn active_set(&mut self) -> Option<&mut dyn ActiveSet> {

@@ -1,7 +1,7 @@
 //! Heat that follows a structure through the iterations of a step, so that both are found in one: `coupling_settings`, "monolithic".
 //!
-//! Heat is solved for after each iteration, and what temperatures would do to the next increment is part of its tangent
-//! ([`Follower`]). So the iteration of both converges as Newton's, also where the one drives the other strongly.
+//! Heat is solved for after each iteration, and the effect of temperatures on the next increment is part of its tangent ([`Follower`]).
+//! So the iteration of both converges as Newton's, also where the one drives the other strongly.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -23,7 +23,7 @@ pub(crate) struct Together {
     heat: Arc<Mutex<Heat>>,
     /// Temperatures at the start of the step, prescribed ones as they are at its end.
     start: Vec<f64>,
-    /// What is out of balance in the state that differences refer to.
+    /// Out-of-balance residual in the state that differences refer to.
     referred: Vec<f64>,
 }
 
@@ -35,7 +35,7 @@ impl Together {
 }
 
 impl Heat {
-    /// What is out of balance in the present state of the structure.
+    /// Out-of-balance residual in the present state of the structure.
     fn out_of_balance(&mut self, part: &mut ModelPart, elements: &[Box<dyn EntityBlock>]) -> Result<Vec<f64>> {
         self.plastic.take(part, elements);
         for interaction in &mut self.system.interactions {

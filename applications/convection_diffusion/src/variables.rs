@@ -8,7 +8,7 @@ register_variable! {
     pub REACTION_FLUX: f64 = "Heat that a prescribed node feeds into the body: minus the residual (power).";
     pub HEAT_FLUX: f64 = "Source of heat (power per volume).";
     pub FACE_HEAT_FLUX: f64 = "Heat that enters through a face (power per area).";
-    pub PROJECTED_SCALAR1: f64 = "Temperature of the last step, carried along with the velocity.";
+    pub PROJECTED_SCALAR1: f64 = "Temperature of the last step, advected with the velocity.";
     pub CONVECTION_VELOCITY: [f64; 3] = "Without effect: VELOCITY less MESH_VELOCITY carries heat.";
     pub TEMPERATURE_GRADIENT: [f64; 3] = "Without effect: no element has gradients as unknowns.";
     pub MESH_VELOCITY: [f64; 3] = "Velocity of the nodes, which VELOCITY is relative to (length per time).";

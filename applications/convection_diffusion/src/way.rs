@@ -8,11 +8,11 @@ use crate::sweeps::Goal;
 
 /// Name of the extension.
 pub const SETTINGS: &str = "coupling_settings";
-/// Values of the step data: what a deck has set.
+/// Names of step data: settings of the deck.
 const TOLERANCE: &str = "COUPLING_TOLERANCE";
 const MOST: &str = "COUPLING_MAX_ITERATION";
 const TOGETHER: &str = "COUPLING_TOGETHER";
-/// What holds where a deck says nothing.
+/// Tolerance and number of iterations where a deck gives none.
 const USUAL: Goal = Goal { tolerance: 1e-6, most: 30 };
 
 /// How both are solved.
@@ -20,14 +20,14 @@ const USUAL: Goal = Goal { tolerance: 1e-6, most: 30 };
 pub(crate) enum Way {
     /// Once each, heat first.
     Sequential,
-    /// By turns until the temperatures stay.
+    /// Staggered: alternately until the temperatures stay.
     Staggered(Goal),
     /// In one Newton's iteration.
     Monolithic,
 }
 
 impl Way {
-    /// That of a part.
+    /// Way of a part.
     pub(crate) fn of(part: &ModelPart) -> Self {
         let value = |name, usual| part.info.value_or(name, usual);
         let goal = Goal { tolerance: value(TOLERANCE, USUAL.tolerance), most: value(MOST, USUAL.most as f64) as usize };

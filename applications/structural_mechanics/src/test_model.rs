@@ -1,4 +1,4 @@
-//! A model part with one entity of one kind, and what tests ask of it.
+//! A model part with one entity of one kind, for tests.
 
 use zelus_core::entities::{BlockRequest, EntityBlock, Gauss, LocalSystems, Want, block_factory, find_kind};
 use zelus_core::geometry::Shape;

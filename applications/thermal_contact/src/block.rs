@@ -1,7 +1,7 @@
 //! Heat between pairs of facets of one pair of shapes: ∫ h (T₁ − T₂)(δT₁ − δT₂) over the points at which they face each other.
 //!
-//! What leaves one body enters the other at the same points by the same number, so that nothing is lost or gained; friction adds what it
-//! has dissipated.
+//! Heat that leaves one body enters the other at the same points by the same number, so that nothing is lost or gained; friction adds
+//! its dissipation.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -124,7 +124,7 @@ impl EntityBlock for ConductanceBlock {
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         let count = self.unknowns.len();
-        // What a point gives to slave and to master nodes.
+        // Contribution of a point to slave and to master nodes.
         let sign = |i: usize| if i < self.masters { 1.0 } else { -1.0 };
         for (slot, at) in range.enumerate() {
             let nodal = self.nodal(view, at);

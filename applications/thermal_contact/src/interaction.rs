@@ -32,7 +32,7 @@ const STEM: &str = "ContactConductanceCondition";
 
 register_pair_conditions! { "ContactConductanceCondition", "heat between two facets that face each other" }
 
-/// What a deck chooses.
+/// Settings of a deck.
 pub struct Chosen {
     /// Between which surfaces.
     pub surfaces: FacingSurfaces,
@@ -44,7 +44,7 @@ pub struct Chosen {
     pub touching: f64,
     /// Whether bodies are of revolution, about the axis that heat has.
     pub axisymmetric: bool,
-    /// Heat by the work of friction: its share, and what brings it to the units of heat.
+    /// Heat of friction: its share times the factor from units of work to units of heat.
     pub friction: f64,
     /// Sliding across the motion of the model: the coefficient of friction, and the speed (length per time).
     pub across: Option<(f64, ScalarValue)>,
@@ -81,7 +81,7 @@ impl ThermalContact {
                 slave.nodes.iter().zip(&found.slave).map(|(&node, n)| n * of(node as usize)).sum()
             };
             let (touches, pressure, gap) = if is_computed {
-                // Contact is what contact has decided: nodes in contact may still be apart while it iterates.
+                // Contact decides: nodes in contact may still be apart while it iterates.
                 let touches = sum(&|node| f64::from(u8::from(status[node] > 0.0))) > 0.0;
                 (touches, sum(&|node| pressures[node]), if touches { sum(&|node| gaps[node]) } else { found.gap })
             } else {

@@ -1,4 +1,4 @@
-//! Heat between bodies in contact: through what touches, through the gas between, by radiation across.
+//! Heat between bodies in contact: through the contact area, through the gas between, by radiation across.
 //!
 //! A [`law`] says how much heat passes at a point, by the pressure, the gap and the temperatures there; `laws` are those there are, one a
 //! file. A [`block`] sums them up over the points at which facets face each other, the [`interaction`] finds these. A module uses only

@@ -73,9 +73,9 @@ impl Limits {
 
 /// The warning that this step wears so much that pressures may swing from step to step, where it does.
 ///
-/// What wears off in a step lowers the pressure by as much as an approach of that depth would raise it; beyond twice the pressure there
-/// was, explicit steps overshoot. Depth by pressure times E/h, with the distance h of nodes, is that
-/// ratio for the shortest wave on the mesh.
+/// Wear in a step lowers the pressure by as much as an approach of that depth would raise it; beyond twice the present pressure,
+/// explicit steps overshoot. Depth by pressure times E/h, with the distance h of nodes, is that ratio for the shortest wave on the
+/// mesh.
 pub fn warn_of_swings<'a>(part: &ModelPart, points: impl Iterator<Item = (&'a Rubbed<'a>, f64)>) -> Option<Diagnostic> {
     let young = |of: usize| part.properties.get(&of).and_then(|own| own.number("YOUNG_MODULUS"));
     let ratio = |(point, depth): (&Rubbed<'a>, f64)| {

@@ -1,4 +1,4 @@
-//! `wear_process`: after each accepted step takes off what has worn.
+//! `wear_process`: removes the worn depth after each accepted step.
 
 use zelus_contact_structural_mechanics::FacingSurfaces;
 use zelus_contact_structural_mechanics::interface::Roles;
@@ -18,7 +18,7 @@ use crate::removal::{Side, Worn};
 use crate::rubbing::{Reading, Rubbed};
 use crate::variables::WEAR_DEPTH;
 
-/// The sides of an interface, in the order of what is kept of them.
+/// The sides of an interface, in the order of their records.
 const SIDES: [Roles; 2] = [Roles::Slave, Roles::Master];
 
 struct WearProcess {
@@ -41,7 +41,7 @@ impl WearProcess {
         self.laws[side].iter().map(|law| law.depth(rubbing)).sum()
     }
 
-    /// What the sides of an interface lose, and the warning of a step that is too long.
+    /// Losses of the sides of an interface, and the warning of a step that is too long.
     fn wear(&self, part: &ModelPart, interface: usize) -> ([Side; 2], Option<Diagnostic>) {
         let points = self.reading.points(part, interface);
         let mut sides = SIDES.map(|role| Side::new(&self.reading.surfaces.interfaces()[interface], role));

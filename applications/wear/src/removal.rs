@@ -2,8 +2,8 @@
 //!
 //! The law gives a volume at points of the facets. A node gets its share V_j = ∫ φ_j w da, is worn by w_j = V_j/∫ φ_j dA and moves by
 //! −V_j b_j/|b_j|², b_j = ∫ φ_j n dA: so do both faces of an edge recede by w_j. Areas and normals are those of the initial shape,
-//! since what is worn off is free of stress. The motion takes off −Σ Δx_j·∫ N_j n dA; on facets of first order, where φ = N, that is
-//! Σ V_j of itself. On those of second order, lines and triangles, whose N have negative values, φ are Bernstein's polynomials, and one
+//! since removed material is free of stress. The motion takes off −Σ Δx_j·∫ N_j n dA; on facets of first order, where φ = N, that is Σ
+//! V_j of itself. On those of second order, lines and triangles, whose N have negative values, φ are Bernstein's polynomials, and one
 //! factor for the whole side, near one, keeps the volume.
 
 use std::f64::consts::TAU;
@@ -26,7 +26,7 @@ pub struct Worn {
     pub way: [f64; 3],
 }
 
-/// One side of an interface, with what it has lost in a step.
+/// One side of an interface, with its losses in a step.
 pub struct Side {
     /// Ascending.
     nodes: Vec<u32>,
@@ -88,7 +88,7 @@ impl Side {
     }
 }
 
-/// What the facets around a node have, weighted by its φ, or by its N.
+/// Sums over the facets around a node, weighted by its φ, or by its N.
 #[derive(Clone, Copy, Default)]
 struct Sums {
     area: f64,

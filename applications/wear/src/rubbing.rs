@@ -1,4 +1,4 @@
-//! What rubs where: pressure and way of sliding at the points at which two facets face each other.
+//! Pressure and direction of sliding at the points at which two facets face each other.
 
 use std::f64::consts::TAU;
 

@@ -1,7 +1,7 @@
-//! What holds each body: rigid motions that supports leave free, and whether contact, friction or nothing takes them.
+//! Restraint of each body: the rigid-body modes that supports leave free, and whether contact, friction or nothing restrains them.
 //!
-//! Bodies are connected elements. Of each, its rigid motions that its elements do not resist are unknowns; supports, constraints,
-//! ties and places in contact are rows over them. Motions that all rows leave alone are free.
+//! Bodies are connected elements. Unknowns are the rigid-body modes of each body that its elements do not resist; supports,
+//! constraints, ties and places in contact are rows over them. Motions that all rows leave alone are free.
 
 use std::collections::BTreeMap;
 
@@ -15,7 +15,7 @@ use crate::processes::Prescription;
 use crate::strategies::body_of;
 use crate::vector3::{add, cross, dot, norm, scale, sub};
 
-/// Most motions that are looked at: the cost grows with their third power.
+/// Largest number of modes that are analysed: the cost grows with their third power.
 const MOST: usize = 120;
 /// Share of the largest eigenvalue below which a motion meets no row.
 const FREE: f64 = 1e-10;
@@ -24,7 +24,7 @@ const SAMPLE: usize = 64;
 /// Share of its terms below which an element does not resist a motion.
 const RIGID: f64 = 1e-8;
 
-/// A rigid motion of a body: u(x) = translation + rotation × (x − centre) / size.
+/// A rigid-body mode of a body: u(x) = translation + rotation × (x − centre) / size.
 struct Motion {
     body: usize,
     translation: [f64; 3],
@@ -41,7 +41,7 @@ struct Bodies<'a> {
     motions: Vec<Motion>,
 }
 
-/// Says of bodies in statics that supports do not hold what does, before the run; collective.
+/// Reports before the run, in statics, the restraint of bodies that supports leave free; collective.
 pub(super) fn tell_what_holds(part: &ModelPart, system: &System, prescribed: &[Prescription], problems: &mut Report) {
     let Some(column) = Rates::moving(&part.nodes.history) else { return };
     let Some(joins): Option<Vec<Vec<Join>>> = system.interactions.iter().map(|own| own.joins(part)).collect() else {
@@ -70,15 +70,19 @@ pub(super) fn tell_what_holds(part: &ModelPart, system: &System, prescribed: &[P
     for at in 0..bodies.bodies.len() {
         let [own, smooth, rough] = [&by_supports, &by_contact, &by_friction].map(|free| bodies.motions_of(at, free));
         let Some(name) = bodies.name(at).filter(|_| own > 0) else { continue };
-        let supports = format!("supports leave {name} {own} rigid motions");
+        let modes = format!("{name} has {own} rigid-body {}", if own == 1 { "mode" } else { "modes" });
         problems.push(if rough > 0 {
-            let fact = format!("{supports}, and contact as it begins leaves {rough}: nothing holds it");
+            let fact =
+                format!("{modes} that supports leave free; initial contact leaves {rough}: nothing restrains it");
             let remedy = "support it in all directions, or check that contact or a tie meets it from the first step";
             Diagnostic::warning("held-by-nothing", fact).remedy(remedy)
         } else if smooth > 0 {
-            Diagnostic::note("held-by-friction", format!("{supports}, {smooth} of which friction alone holds"))
+            Diagnostic::note(
+                "held-by-friction",
+                format!("{modes} restrained by contact only, {smooth} by friction only"),
+            )
         } else {
-            Diagnostic::note("held-by-contact", format!("{supports}, which contact alone holds"))
+            Diagnostic::note("held-by-contact", format!("{modes} restrained by contact only"))
         });
     }
 }
@@ -105,7 +109,7 @@ impl<'a> Bodies<'a> {
         Self { part, of_node, bodies, motions: Vec::new() }
     }
 
-    /// The rigid motions that an element of the body does not resist; collective.
+    /// The rigid-body modes that an element of the body does not resist; collective.
     fn find_motions(&mut self, system: &System) {
         let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let space = self.part.info.domain_size;
@@ -164,7 +168,7 @@ impl<'a> Bodies<'a> {
         add(motion.translation, cross(motion.rotation, arm))
     }
 
-    /// Motion of a node in a direction, by each rigid motion.
+    /// Displacement of a node in a direction, by each rigid-body mode.
     fn row(&self, node: u32, direction: [f64; 3], factor: f64, row: &mut [f64]) {
         let body = self.of_node[node as usize];
         for (entry, motion) in row.iter_mut().zip(&self.motions).filter(|(_, motion)| motion.body == body) {
@@ -215,7 +219,7 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// Rows of elements of one node and of conditions with stiffness: what they touch is held.
+    /// Rows of elements of one node and of conditions with stiffness: they restrain their nodes.
     fn elements_on_ground(&self, system: &System, rows: &mut Rows) {
         let stiff = |tangent: Tangent| matches!(tangent, Tangent::Constant | Tangent::Symmetric);
         let points = system.elements.iter().filter(|block| !block.is_empty() && block.nodes(0).len() == 1);

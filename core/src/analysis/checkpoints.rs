@@ -113,7 +113,7 @@ fn restart(import: &Node, folder: &Path) -> Result<Beginning> {
 pub(super) struct Pointer(PathBuf);
 
 impl Pointer {
-    /// That of a deck with results in this folder.
+    /// Pointer file of a deck with results in this folder.
     pub(super) fn of(deck: &Path, results: &Path) -> Self {
         Self(results.join(deck.file_name().unwrap_or_default()).with_extension("resume"))
     }

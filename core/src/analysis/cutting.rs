@@ -18,8 +18,8 @@ impl Default for Cutting {
 
 /// The lengths tried on the way to the end of one of the deck's steps.
 ///
-/// No attempt is shorter than the whole step cut as often as it may be, wherever in the step it stands: what is left to the end of
-/// the step is no step of its own.
+/// No attempt is shorter than the whole step cut as often as it may be, wherever in the step it stands: a shorter remainder at the end
+/// of the step does not count.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lengths {
     factor: f64,

@@ -1,4 +1,4 @@
-//! What a deck says: its stages, and of each the keys at its top level, mesh and materials, processes.
+//! A deck as stages; each with the keys at its top level, mesh, materials and processes.
 
 use std::path::{Path, PathBuf};
 
@@ -18,7 +18,7 @@ pub(super) fn open(path: &Path) -> Result<(Document, PathBuf)> {
     Ok((Document::read(path)?, folder))
 }
 
-/// What a deck says of one stage.
+/// One stage of a deck.
 pub(super) struct StageDeck {
     /// Its name among the stages, or that of the problem where there is only one.
     pub name: String,
@@ -203,7 +203,7 @@ pub(super) fn import(
     Ok(())
 }
 
-/// Gives the part the materials that the settings name, and lets the solver make of it what it computes on.
+/// Gives the part the materials that the settings name, and lets the solver adapt it.
 ///
 /// # Errors
 /// A file that cannot be read, materials that do not fit.
@@ -230,8 +230,8 @@ pub(super) fn mesh_file(solver: &Node, folder: &Path) -> Option<(&'static MeshFo
     Some((format, format.file(&folder.join(named("model_import_settings.input_filename")?))))
 }
 
-/// In the place of a mesh that could not be read: a part with the names of its parts alone, so that what else is wrong with the
-/// deck is found, too; `None` where there are no names.
+/// Replacement for a mesh that could not be read: a part with the names of its parts alone, so that other problems of the deck are
+/// found, too; `None` where there are no names.
 pub(super) fn add_names_only(solver: &SolverSettings, root: &str, folder: &Path, model: &mut Model) -> Option<()> {
     let (format, file) = mesh_file(solver.settings.node(), folder)?;
     if format.name != "mdpa" {
@@ -240,7 +240,7 @@ pub(super) fn add_names_only(solver: &SolverSettings, root: &str, folder: &Path,
     model.parts.remove(root);
     let mut part = ModelPart::new(root);
     part.tree.children = io::names_of_parts(&file)?;
-    // What is wrong with the settings was said when the mesh was to be read.
+    // Faults of the settings were reported when the mesh was read.
     let _ = solver.prepare(&mut part);
     part.info.solver.incomplete = true;
     model.add(part);
@@ -261,9 +261,9 @@ pub(super) fn listed<'a>(deck: &'a Node, problems: &mut Report) -> Vec<&'a Node>
 /// Where names of files begin.
 #[derive(Debug, Clone)]
 pub(super) struct Folders {
-    /// Those that are read: the folder of the deck.
+    /// Folder of input files: that of the deck.
     pub deck: PathBuf,
-    /// Those that are written.
+    /// Folder of output files.
     pub results: PathBuf,
 }
 

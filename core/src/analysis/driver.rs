@@ -1,4 +1,4 @@
-//! What a program that drives a run may do at the points of its loop.
+//! Interface of a program that drives a run: its calls at the points of the loop.
 
 use crate::assembly::System;
 use crate::diagnostics::Result;
@@ -36,8 +36,8 @@ pub trait Driver: Send {
         Ok(None)
     }
 
-    /// The stage that solves for the part `root` is at `point`; `act` does what it does there, as often as it is called. `system`
-    /// is without unknowns before [`Point::Ready`].
+    /// The stage that solves for the part `root` is at `point`; each call of `act` performs the stage's work there. `system` is without
+    /// unknowns before [`Point::Ready`].
     ///
     /// # Errors
     /// As `act`; whatever ends the run.

@@ -1,7 +1,7 @@
 //! Defaults of another program, laid under a deck that asks for them: `--like kratos`, or `"like"` of `problem_data`.
 //!
-//! Each registered object says in its `like` what that program takes where a deck names nothing. These values are put into
-//! the deck before anything reads it, so that they are settings like any other and nothing else knows of them.
+//! Each registered object gives in its `like` the default of that program. These values are put into the deck before anything reads it,
+//! so that they are settings like any other and nothing else knows of them.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use crate::diagnostics::{Diagnostic, Report, Result, did_you_mean};
 use crate::parameters::{Defaults, Node, Object, Value};
 use crate::registry::{self, Entry};
 
-/// The program whose defaults hold for a stage: `asked` of the caller, else what its `problem_data` says; `None` for our own.
+/// Program whose defaults are used for a stage: `asked` of the caller, else that of its `problem_data`; `None` for our own.
 ///
 /// # Errors
 /// `unknown-program` with the names there are.
@@ -33,7 +33,7 @@ pub(super) fn program(deck: &Node, asked: Option<&str>) -> Result<Option<&'stati
     Err(place.map_or(problem.clone(), |place| problem.at(place)).into())
 }
 
-/// Puts the defaults of `program` under the deck's solver settings and processes; returns what was added, as `object.key = value`.
+/// Adds the defaults of `program` to the deck's solver settings and processes; returns the additions, as `object.key = value`.
 ///
 /// # Errors
 /// Objects whose values for this program are no JSON.

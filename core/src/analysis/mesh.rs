@@ -1,4 +1,4 @@
-//! The mesh of a deck alone, for what needs nothing else.
+//! The mesh of a deck alone, for callers that need nothing else.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::model::{Model, ModelPart};
 use crate::modelers::run_modelers;
 use crate::partition::{Surface, surfaces};
 
-/// A mesh, and what of it ranks have in common.
+/// A mesh, and its entities that all ranks have.
 pub struct DeckMesh {
     /// The model part that the first stage reads.
     pub part: ModelPart,

@@ -149,7 +149,7 @@ fn move_into(top: &mut Object, key: &str, section: &str, name: &str) {
     }
 }
 
-/// The process that writes what the old settings of GiD's output ask for.
+/// Output process that corresponds to the old settings of GiD's output.
 fn gid_output(deck: &Node) -> Option<Node> {
     let settings = deck.get(GID)?;
     settings.as_object()?;

@@ -1,4 +1,4 @@
-//! Takes what ranks remember to another number of ranks, by the places of nodes in the whole mesh.
+//! Repartitions states of ranks to another number of ranks, by the places of nodes in the whole mesh.
 
 use rustc_hash::FxHashMap;
 use zelus_linear_algebra::{Carrier, State, Unknowns};
@@ -10,12 +10,12 @@ use crate::diagnostics::Result;
 use crate::entities::regroup;
 use crate::model::ModelPart;
 
-/// Whose state is shown.
+/// Owner of the state that is visited.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Turn {
-    /// That of a rank that was.
+    /// State of an earlier rank.
     Was(usize),
-    /// That of the rank to come, as it begins.
+    /// State of the new rank at its start.
     Begins,
     /// The one that the rank to come is to have.
     Comes,
@@ -33,13 +33,13 @@ pub(super) struct Regrouping {
     turn: Turn,
     /// The unknowns of whom is shown.
     unknowns: Unknowns,
-    /// Those of the rank to come, in the order in which they are begun.
+    /// Unknowns of the new rank, in the order in which they are begun.
     begun: Vec<Unknowns>,
     /// How many of them are.
     beginnings: usize,
     /// Names of unknowns.
     names: Vec<String>,
-    /// The numbers of all ranks, by what is shown of one rank after another.
+    /// Numbers of all ranks by key, for each column visited.
     shown: Vec<FxHashMap<Key, f64>>,
     /// How many columns of this state were shown.
     at: usize,
@@ -65,7 +65,7 @@ impl Regrouping {
         }
     }
 
-    /// What the rank to come is to remember of a stage: of `stages` by rank; `begins` is its own as it begins.
+    /// State of a stage on the new rank, from `stages`, the states of all earlier ranks; `begins` is the new rank's state at the start.
     ///
     /// # Errors
     /// States that do not fit each other or the mesh.

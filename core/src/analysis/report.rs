@@ -1,4 +1,4 @@
-//! The report of a run: what was solved, how it went, how long it took.
+//! The report of a run: sizes, convergence, times.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -26,7 +26,7 @@ pub struct Sizes {
     pub unknowns: usize,
 }
 
-/// What a run leaves behind, as written by `--report`.
+/// Report of a run, as written by `--report`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunReport {
     /// Version of the program.
@@ -43,7 +43,7 @@ pub struct RunReport {
     pub sizes: Sizes,
     /// Accepted steps and failed attempts, in order; of more than 10,000 every `kept_every`-th step, and the last one.
     pub steps: Vec<StepRecord>,
-    /// Of how many steps the records of one are kept.
+    /// Number of steps for each kept record.
     pub kept_every: usize,
     /// Steps that converged, all.
     pub converged_steps: usize,
@@ -58,7 +58,7 @@ pub struct RunReport {
     pub notes: Vec<String>,
     /// Warnings, in words.
     pub warnings: Vec<String>,
-    /// Which engine serves the deck's linear solver.
+    /// Engine of the deck's linear solver.
     pub linear_solver: String,
     /// Numbers that interactions chose for the run, by name, e.g. penalty and scale factor of contact; of the last stage.
     pub parameters: BTreeMap<String, f64>,
@@ -74,8 +74,8 @@ pub struct RunReport {
     /// Files that were read: deck, mesh, materials, tables; of the last stage.
     #[serde(default)]
     pub inputs: Vec<PathBuf>,
-    /// The largest size at a node of each usual result, by name: unknowns, reactions, what contact finds; at the end of a run that
-    /// came to it.
+    /// The largest absolute nodal value of each default output variable, by name: unknowns, reactions, contact results; at the end of a
+    /// run that came to it.
     #[serde(default)]
     pub largest: BTreeMap<String, f64>,
     /// Whether every step converged.
@@ -134,7 +134,7 @@ impl RunReport {
         }
     }
 
-    /// Adds what processes tell of the last step.
+    /// Adds the numbers that processes report for the last step.
     pub fn add_numbers(&mut self, numbers: impl IntoIterator<Item = (&'static str, f64)>) {
         if let Some(last) = self.steps.last_mut() {
             last.interactions.extend(numbers.into_iter().map(|(name, value)| (name.to_owned(), value)));

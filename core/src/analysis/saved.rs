@@ -3,7 +3,7 @@
 use crate::assembly::System;
 use crate::model::{Fields, Flags, MasterSlaveConstraint, ModelPart, NodalState, ProcessInfo};
 
-/// What a retried step must find again: all that processes and the solution of a step change.
+/// State that a retried step restores: all that processes and the solution of a step change.
 pub(super) struct Saved {
     nodal: NodalState,
     elements: (Fields, Flags),

@@ -1,8 +1,8 @@
 //! A whole run between two steps, as a file holds it.
 //!
-//! What a deck says and what is made of it at the start of a stage, as numbers of unknowns, blocks and geometry of interfaces, is
-//! made again from the deck; the file holds all that has come of it since, the fields to the bit. What a stage was made of
-//! is the model that the stages before have left, so that this is held, too.
+//! Contents of the deck, and objects made from them at the start of a stage (numbers of unknowns, blocks, geometry of interfaces), are
+//! made again from the deck; the file holds all later changes, the fields bitwise. A stage is made from the model that the stages
+//! before have left, so the file holds that model, too.
 
 use std::collections::BTreeMap;
 
@@ -18,13 +18,13 @@ use crate::entities::{EntityBlock, regroup};
 use crate::model::{Field, Fields, Model, ModelPart, Share};
 use crate::parameters::{Node, Value};
 
-/// What participants of one kind remember, in their order.
+/// States of participants of one kind, in their order.
 pub(super) type States = Vec<Option<Box<dyn State>>>;
 
 /// The contents of the file: written from references, read into values.
 #[derive(Serialize, Deserialize)]
 pub(super) struct SavedRun<M, R> {
-    /// Of the deck, see [`fingerprint`].
+    /// Fingerprint of the deck, see [`fingerprint`].
     pub deck: u32,
     /// Stages that are over.
     pub over: usize,
@@ -34,9 +34,9 @@ pub(super) struct SavedRun<M, R> {
     pub before: Option<M>,
     /// The model now.
     pub model: M,
-    /// What the elements of earlier stages remember, by root part.
+    /// States of the elements of earlier stages, by root part.
     pub systems: BTreeMap<String, States>,
-    /// What the stage under way remembers.
+    /// State of the stage under way.
     pub stage: Option<SavedStage>,
     /// The report so far.
     pub report: R,
@@ -44,12 +44,12 @@ pub(super) struct SavedRun<M, R> {
     pub mesh: Option<String>,
 }
 
-/// What a stage remembers.
+/// State of a stage.
 #[derive(Serialize, Deserialize)]
 pub(super) struct SavedStage {
     pub begun: bool,
     pub first_length: Option<f64>,
-    /// What the states of the strategy go by.
+    /// Layout of the unknowns to which the states of the strategy refer.
     pub unknowns: Unknowns,
     pub strategy: Option<Box<dyn State>>,
     pub elements: States,
@@ -88,7 +88,7 @@ const FREE: [&str; 4] = [
     "problem_data.end_time",
     "problem_data.echo_level",
     "problem_data.parallel_type",
-    // What a mesh holds is compared itself.
+    // The contents of the mesh are compared themselves.
     "solver_settings.model_import_settings",
 ];
 
@@ -134,7 +134,7 @@ fn add(node: &Node, path: &str, hasher: &mut crc32fast::Hasher) {
     }
 }
 
-/// What the blocks remember.
+/// States of the blocks.
 pub(super) fn states_of(blocks: &[Box<dyn EntityBlock>]) -> States {
     blocks.iter().map(|block| block.state()).collect()
 }
@@ -156,7 +156,7 @@ pub(super) fn hand_out<T>(
     to.iter_mut().zip(states).try_for_each(|(own, state)| state.map_or(Ok(()), |state| resume(own, state)))
 }
 
-/// Gives the blocks what they remembered.
+/// Restores the states of the blocks.
 ///
 /// # Errors
 /// States of other blocks.
@@ -164,7 +164,7 @@ pub(super) fn resume_blocks(blocks: &mut [Box<dyn EntityBlock>], states: States)
     hand_out(blocks, states, "blocks of entities", |block, state| block.resume(state))
 }
 
-/// The elements of an earlier stage on a part, with what they remembered: `states` of this rank, or of all ranks that were where it is
+/// The elements of an earlier stage on a part, with their states: `states` of this rank, or of all earlier ranks where it is
 /// `regrouped`.
 ///
 /// # Errors
@@ -232,7 +232,7 @@ pub(super) fn whole(mut models: Vec<Model>) -> Result<Model> {
     Ok(Model { parts: by_name.into_iter().map(joined).collect::<Result<_>>()?, ..Model::default() })
 }
 
-/// That a saved run does not belong to the deck.
+/// Error: a saved run does not belong to the deck.
 pub(super) fn other_deck(fact: impl Into<String>) -> crate::diagnostics::Error {
     Diagnostic::error("saved-run", fact)
         .remedy("go on with the deck and mesh it was saved by, or run this deck from its start")

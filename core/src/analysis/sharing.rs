@@ -1,4 +1,4 @@
-//! Who computes what: the mesh of a stage shared among the ranks, which must have read the same files.
+//! Distribution of the mesh of a stage over the ranks, which must have read the same files.
 
 use std::hash::{Hash, Hasher};
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::parameters::Node;
 use crate::partition::{Partition, Shares, Surface, common_nodes, everywhere, partition, surfaces};
 use crate::strategies::Monitor;
 
-/// Who has what of a mesh, and the nodes that all have.
+/// Partition of a mesh, and the nodes that all ranks have.
 struct Cut {
     partition: Partition,
     common: Vec<bool>,
@@ -33,7 +33,7 @@ pub(super) fn distribute(
     monitor: &mut dyn Monitor,
 ) -> Result<()> {
     let ranks = model.ranks.clone();
-    // What an earlier stage has shared out stays where it is, unless a modeler has changed it: then every rank has it whole.
+    // A part that an earlier stage has distributed stays so, unless a modeler has changed it: then every rank has it whole.
     if ranks.size() == 1 || model.parts.get(root).is_some_and(is_shared) {
         return Ok(());
     }

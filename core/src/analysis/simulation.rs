@@ -1,4 +1,4 @@
-//! A deck that is run step by step, and what it holds on the way.
+//! A deck that is run step by step, with its model and report.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -24,19 +24,19 @@ use crate::parameters::Node;
 use crate::processes::Process;
 use crate::strategies::{Monitor, StepRecord};
 
-/// What a caller of a [`Simulation`] chooses.
+/// Options of a [`Simulation`] that its caller chooses.
 #[derive(Debug, Clone, Default)]
 pub struct RunOptions {
     /// Threads; `None` takes all of the machine.
     pub threads: Option<usize>,
-    /// Program whose defaults hold where the deck names nothing, e.g. `kratos`; `None` for what the deck says, else our own.
+    /// Program whose defaults are used where the deck gives none, e.g. `kratos`; `None` for that of the deck, else our own.
     pub like: Option<String>,
     /// The processes that run the deck together, as [`communication::join`](crate::communication::join) gives them; this one
     /// alone by default.
     pub ranks: Ranks,
     /// Files that the caller will write: none of them may be one that the run reads or writes.
     pub outputs: Vec<PathBuf>,
-    /// Values to take in place of what the deck says, by dotted paths, which may hold places in lists: `problem_data.end_time`,
+    /// Values that replace those of the deck, by dotted paths, which may hold places in lists: `problem_data.end_time`,
     /// `processes.loads.0.Parameters.modulus`. They are checked as if the deck said them.
     pub changes: Vec<(String, serde_json::Value)>,
     /// Where relative names of files that are written start; `None` for the folder of the deck.
@@ -54,10 +54,10 @@ fn change(deck: &mut Node, options: &RunOptions) -> Result<()> {
 
 /// A deck with its model and the stage under way.
 ///
-/// [`Simulation::step`] makes one step of the deck after another; between them fields can be read and written, and what they
-/// hold then is what the next step begins with. Several simulations in one process know nothing of each other.
+/// [`Simulation::step`] makes one step of the deck after another. Between them fields can be read and written; the next step begins
+/// with the values written. Several simulations in one process know nothing of each other.
 ///
-/// The monitor that watches is passed to what computes: [`Silent`](crate::strategies::Silent) says nothing.
+/// The monitor is passed to all computations: [`Silent`](crate::strategies::Silent) prints nothing.
 pub struct Simulation {
     stages: Vec<StageDeck>,
     /// Stages that are over.
@@ -141,7 +141,7 @@ impl Simulation {
         self.more.push(process);
     }
 
-    /// Lets a program of the caller's drive the run, in place of what did.
+    /// Replaces the driver of the run by one of the caller.
     pub fn set_driver(&mut self, driver: Box<dyn Driver>) {
         self.driver = driver;
     }
@@ -158,8 +158,8 @@ impl Simulation {
     /// Makes the next step of the deck; `false` when there was none left, and every process has come to its end.
     ///
     /// # Errors
-    /// Problems of the deck, before anything is solved; a step that does not converge, however short; a failed solver, process or
-    /// file. Processes have then come to their end, and what has converged is written.
+    /// Problems of the deck, before anything is solved; a step that does not converge, however short; a failed solver, process or file.
+    /// Processes have then come to their end, and the converged steps are written.
     pub fn step(&mut self, monitor: &mut dyn Monitor) -> Result<bool> {
         self.timed(|simulation| simulation.next_step(monitor))
     }
@@ -175,7 +175,7 @@ impl Simulation {
         })
     }
 
-    /// Ends here, before the last step: every process comes to its end and writes what it holds.
+    /// Ends here, before the last step: every process comes to its end and writes its results.
     ///
     /// # Errors
     /// A process or file that fails.
@@ -225,7 +225,7 @@ impl Simulation {
         write_saved(&self.model.ranks, path, &run)
     }
 
-    /// Saves the run beside its deck, where [`Simulation::resume`] finds it, and ends here: every process writes what it holds.
+    /// Saves the run beside its deck, where [`Simulation::resume`] finds it, and ends here: every process writes its results.
     ///
     /// # Errors
     /// A deck that is no file; a disk that refuses, a process that fails.
@@ -249,10 +249,10 @@ impl Simulation {
         Ok(Some(path))
     }
 
-    /// Goes on where a run of the same deck was saved: what follows are the same bits, on any number of threads; on another number of
-    /// ranks they differ by round-off. Nothing may be prepared yet; processes of the caller's are added before.
+    /// Continues from a saved run of the same deck: further results are bitwise identical, on any number of threads; on another number
+    /// of ranks they differ by round-off. Nothing may be prepared yet; processes of the caller's are added before.
     ///
-    /// Meshes are read again. Files of output that grow lose what was added since the run was saved.
+    /// Meshes are read again. Output files that grow are cut to their length at the time of saving.
     ///
     /// # Errors
     /// A file that is no whole saved run, or one of another deck or mesh; problems of the deck.
@@ -325,13 +325,13 @@ impl Simulation {
     fn load_run(&mut self, path: &Path, monitor: &mut dyn Monitor) -> Result<()> {
         let ranks = self.model.ranks.clone();
         let file = ranks.agree(SavedFile::open(path))?;
-        // Each rank takes up what it had; on another number of them, its share of what all had.
+        // Each rank restores its own state; on another number of ranks, its share of all states.
         let same = file.ranks() == ranks.size();
         let wanted = if same { ranks.rank()..ranks.rank() + 1 } else { 0..file.ranks() };
         let runs: Vec<LoadedRun> = ranks.agree(wanted.map(|rank| file.read(rank)).collect())?;
         if !same {
             let (were, are) = (file.ranks(), ranks.size());
-            monitor.note(&format!("saved by {were} processes, {are} go on: the last digits may be others"));
+            monitor.note(&format!("saved by {were} ranks, restarted on {are}: results agree to round-off"));
         }
         let here = Place::file(path);
         self.take_up(runs, !same, monitor).map_err(|error| error.at(&here))

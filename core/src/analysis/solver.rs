@@ -1,4 +1,4 @@
-//! The solver of a stage: what `solver_settings` asks for, made from registered pieces.
+//! The solver of a stage as `solver_settings` describes it, made from registered objects.
 
 use std::path::Path;
 
@@ -45,7 +45,7 @@ registered_kind! {
     }
 }
 
-/// What an application registers for a `solver_type`.
+/// Entry that an application registers for a `solver_type`.
 pub struct SolverDefinition {
     /// Registered solver that these settings, as the user wrote them, ask for instead; `None` for this one.
     pub variant: fn(&Node) -> Option<&'static str>,
@@ -57,13 +57,13 @@ pub struct SolverDefinition {
     pub scheme: fn(&Settings) -> Result<String>,
     /// Names the deprecated spellings of settings.
     pub adapt: fn(Defaults) -> Defaults,
-    /// Makes the part as read, with its materials, what the solver computes on.
+    /// Prepares the part as read, with its materials, for the solver.
     ///
-    /// An error names what of mesh or settings does not fit.
+    /// An error names the fault of mesh or settings.
     pub adopt: fn(&Settings, &mut ModelPart, &mut Report) -> Result<()>,
     /// Puts a deck of several solvers into the form of one with extensions.
     ///
-    /// An error names what does not fit.
+    /// An error names the fault.
     pub unfold: fn(&mut Node) -> Result<()>,
 }
 
@@ -80,7 +80,7 @@ impl SolverDefinition {
     };
 }
 
-/// What an application registers for a nested object of `solver_settings`.
+/// Entry that an application registers for a nested object of `solver_settings`.
 pub struct ExtensionDefinition {
     /// Further variables with history, for these settings of the nested object.
     ///
@@ -106,9 +106,9 @@ pub struct ExtensionDefinition {
     ///
     /// An error names a setting that does not fit.
     pub values: fn(&Settings) -> Result<Vec<(&'static str, f64)>>,
-    /// What it does to the part as read, with its materials; the folder is that of the deck.
+    /// Changes the part as read, with its materials; the folder is that of the deck.
     ///
-    /// An error names what of mesh or settings does not fit.
+    /// An error names the fault of mesh or settings.
     pub adopt: fn(&Settings, &Path, &mut ModelPart, &mut Report) -> Result<()>,
     /// The strategy around that of the solver; that itself where nothing is to be added. The interactions are those of this extension
     /// ([`Interaction::extension`]).
@@ -148,7 +148,7 @@ pub enum TimeScheme {
     Explicit(CentralDifferences),
 }
 
-/// The settings of a stage's solver, checked, with what they ask for.
+/// The checked settings of a stage's solver, with the objects that they name.
 pub struct SolverSettings {
     /// All settings, nested objects of extensions included, defaults filled in.
     pub settings: Settings,
@@ -171,7 +171,7 @@ pub struct SolverSettings {
 impl SolverSettings {
     /// Checks `solver_settings`.
     ///
-    /// What does not fit goes to `report`.
+    /// Unsuitable settings go to `report`.
     ///
     /// # Errors
     /// No such solver, settings that are no object.
@@ -253,7 +253,7 @@ impl SolverSettings {
     /// Gives the nodes their variables with history, the buffer its length, and the part its marks.
     ///
     /// # Errors
-    /// Settings that are not what they should be.
+    /// Unsuitable settings.
     pub fn prepare(&self, part: &mut ModelPart) -> Result<()> {
         part.info.domain_size = self.settings.get_usize("domain_size")?;
         let levels = self.settings.get_usize("buffer_size")?.max(2);
@@ -289,10 +289,10 @@ impl SolverSettings {
         Ok(())
     }
 
-    /// Lets the solver make the part what it computes on.
+    /// Lets the solver prepare the part for its computations.
     ///
     /// # Errors
-    /// What of mesh or settings does not fit.
+    /// Faults of the mesh or the settings.
     pub fn adopt(&self, folder: &Path, part: &mut ModelPart, report: &mut Report) -> Result<()> {
         (self.definition.adopt)(&self.settings, part, report)?;
         self.extensions.iter().try_for_each(|(extension, own)| (extension.adopt)(own, folder, part, report))
@@ -411,7 +411,7 @@ impl SolverSettings {
         Ok((strategy, says))
     }
 
-    /// The strategy without what extensions put around it.
+    /// The strategy without wrappers of extensions.
     fn own_strategy(
         &self,
         part: &mut ModelPart,
@@ -483,7 +483,7 @@ impl SolverSettings {
         Ok((made, says))
     }
 
-    /// Whether there is what iterations are to be made of.
+    /// Checks that the objects of the iterations exist.
     ///
     /// # Errors
     /// Names that are not registered, a number of iterations that is none, gathered.
@@ -514,7 +514,7 @@ impl SolverSettings {
         problems.finish().map(|_| ())
     }
 
-    /// What the `type` of an object of the settings names; without one, `newton_raphson` or `block`.
+    /// Entry named by the `type` of an object of the settings; without one, `newton_raphson` or `block`.
     fn named<R: Registered>(&self, key: &str) -> Result<&'static R> {
         let path = format!("{key}.type");
         let name = self.settings.node().get_path(&path).map_or(Ok(""), Node::str)?;

@@ -54,7 +54,7 @@ fn is_smallest(part: &SubPart, at: &u32) -> bool {
 
 /// Entities with the nodes of an earlier one, conditions of the same kind: the earlier and the later.
 fn twins(table: &EntityTable, wanted: impl Fn(u32) -> bool + Sync) -> Vec<[u32; 2]> {
-    // What twins have alike, and few others.
+    // Key that twins share, and few others.
     let key = |at: u32| {
         let nodes = table.nodes(at);
         let kind = if table.kinds[at as usize].role == Role::Element { "" } else { table.kinds[at as usize].name };
@@ -83,7 +83,7 @@ fn twins(table: &EntityTable, wanted: impl Fn(u32) -> bool + Sync) -> Vec<[u32; 
     out
 }
 
-/// What the processes prescribe on a root part at a time, in their order.
+/// Prescriptions of the processes on a root part at a time, in their order.
 pub(super) fn prescriptions(part: &ModelPart, processes: &[Box<dyn Process>], time: f64) -> Vec<Prescription> {
     processes.iter().flat_map(|process| process.prescribes(part, time)).collect()
 }
@@ -98,7 +98,7 @@ pub(super) fn warn_of_contradictions(
     for time in times {
         let all = prescriptions(part, processes, time);
         let mut known: FxHashMap<(ScalarVariable, u32), (usize, f64)> = FxHashMap::default();
-        // First node, its two values and the number of nodes, by what contradicts what.
+        // First node, its two values and the number of nodes, by the two contradicting processes.
         let mut found: Vec<([usize; 2], u32, [f64; 2], usize)> = Vec::new();
         for (at, own) in all.iter().enumerate() {
             for &(node, value) in &own.values {

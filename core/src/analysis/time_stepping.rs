@@ -21,7 +21,7 @@ const ONE_STEP: f64 = 1e4;
 #[derive(Debug, Clone, PartialEq)]
 pub struct TimeStepping {
     rule: StepLength,
-    /// What becomes of the step that would go beyond the end.
+    /// Treatment of the last step where it would pass the end time.
     last_step: LastStep,
 }
 
@@ -34,9 +34,9 @@ enum LastStep {
     /// It is whole where at least half of it is left, or where it is the only one and far longer than the run; it is shortened
     /// otherwise.
     Automatic,
-    /// The last step ends there; what is round-off is no step.
+    /// The last step ends there; a remainder of round-off is no step.
     Shortened,
-    /// It is whole and goes beyond the end; what is round-off is no step.
+    /// It is whole and goes beyond the end; a remainder of round-off is no step.
     Whole,
     /// There are steps while the time, as a number, is below the end.
     WhileBelow,

@@ -1,4 +1,4 @@
-//! Warnings of what a deck says and nothing heeds: keys that nothing reads, processes that never act, settings without a user.
+//! Warnings of settings without effect: keys that nothing reads, processes that never act, settings without a user.
 
 use super::deck::{listed, unread_key};
 use super::solver::SolverExtensionEntry;
@@ -143,8 +143,8 @@ fn is_of_surfaces(process: &Node) -> bool {
     entry.is_some_and(|entry| !(entry.surfaces)(process.get("Parameters")).is_empty())
 }
 
-/// What the linear solver or the format of meshes that `object` names reads besides, nothing where it names none; `None` where
-/// there is no such solver.
+/// Settings that the linear solver or mesh format named by `object` reads besides, empty where it names none; `None` where there is no
+/// such solver.
 fn own_settings(object: &Node) -> Option<Defaults> {
     let name = object.get("solver_type").and_then(|node| node.as_str()?.rsplit('.').next()).unwrap_or_default();
     let format = object.get("input_type").and_then(Node::as_str).and_then(registry::find::<MeshFormatEntry>);

@@ -5,7 +5,7 @@ use crate::model::{Halo, ModelPart};
 
 use super::dof_table::DofTable;
 
-/// Which rank owns each unknown this rank has, that of its node, and where the copies are.
+/// Owner rank of each unknown this rank has, that of its node, and the places of the copies.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Distribution {
     owners: Vec<u32>,
@@ -15,7 +15,7 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// The owners of `dofs`; `None` when this process has everything.
+    /// The owners of `dofs`; `None` when this rank has everything.
     pub fn new(dofs: &DofTable, part: &ModelPart) -> Option<Self> {
         let share = part.share.as_ref()?;
         let of_nodes = |list: &[u32]| -> Vec<u32> { dofs.dofs().iter().map(|dof| list[dof.node as usize]).collect() };
@@ -41,7 +41,7 @@ impl Distribution {
         self.places[number]
     }
 
-    /// Replaces what this rank has by the sum over all ranks, the same bits on each of them; collective.
+    /// Replaces the values of this rank by the sum over all ranks, bitwise equal on each of them; collective.
     pub fn sum(&self, values: &mut [f64]) {
         self.halo.sum(values);
     }

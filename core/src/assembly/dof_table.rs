@@ -84,11 +84,11 @@ struct Numbers {
 #[derive(Debug, Clone, Default)]
 pub struct DofTable {
     dofs: Vec<Dof>,
-    /// Which of them move their node.
+    /// Mask of unknowns that move their node.
     moving: Vec<bool>,
-    /// Of each the place of its variable among [`DofTable::variables`].
+    /// Place of each unknown's variable among [`DofTable::variables`].
     kinds: Vec<u16>,
-    /// Which of the variables are Lagrange multipliers.
+    /// Mask of variables that are Lagrange multipliers.
     multipliers: Vec<bool>,
     numbers: BTreeMap<ScalarVariable, Numbers>,
     /// Names of the sets of slave nodes.
@@ -254,12 +254,12 @@ impl DofTable {
         all.filter(|number| **number != NONE).map(|&number| number as usize)
     }
 
-    /// Of each unknown the place of its variable among [`DofTable::variables`].
+    /// Place of each unknown's variable among [`DofTable::variables`].
     pub fn kinds(&self) -> &[u16] {
         &self.kinds
     }
 
-    /// Which of [`DofTable::variables`] are Lagrange multipliers.
+    /// Mask of [`DofTable::variables`] that are Lagrange multipliers.
     pub fn multipliers(&self) -> &[bool] {
         &self.multipliers
     }
@@ -321,7 +321,7 @@ impl DofTable {
         out
     }
 
-    /// Writes what [`DofTable::column`] gives; other entries of the columns stay.
+    /// Writes a vector as [`DofTable::column`] gives it; other entries of the columns stay.
     pub fn write_column(&self, part: &mut ModelPart, column: ColumnOf, level: usize, values: &[f64]) {
         for (variable, numbers) in &self.numbers {
             let Some(name) = Rates::of(variable.column).and_then(column) else { continue };

@@ -15,7 +15,7 @@ use super::rows::{ROWS, fill_rows, starts};
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{MasterSlaveConstraint, ModelPart};
 
-/// What became of an unknown.
+/// Role of an unknown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 enum Role {
     Free(u32),
@@ -28,9 +28,9 @@ enum Role {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Follow {
     equation: u32,
-    /// Of its motion.
+    /// Factor of its motion.
     weight: f64,
-    /// Of the slave's force.
+    /// Factor of the slave's force.
     force: f64,
 }
 
@@ -54,10 +54,10 @@ pub struct Equations {
     has_slaves: bool,
     #[serde(skip)]
     symmetric: bool,
-    /// What constraints hand on to fixed unknowns.
+    /// Contributions of constraints to fixed unknowns.
     #[serde(skip)]
     pub(super) leaning: Vec<Leaning>,
-    /// What the equations stand for.
+    /// Meaning of the equations.
     #[serde(skip)]
     pub layout: Layout,
 }
@@ -194,7 +194,7 @@ impl Equations {
         out
     }
 
-    /// The residual as the equations see it: what slaves carry is added to their masters, and only free unknowns are left.
+    /// The residual as the equations see it: forces on slaves are added to their masters, and only free unknowns remain.
     pub fn balanced<'r>(&self, full: &'r [f64]) -> Cow<'r, [f64]> {
         if !self.has_slaves {
             return Cow::Borrowed(full);
@@ -204,7 +204,7 @@ impl Equations {
         Cow::Owned(out)
     }
 
-    /// The residual with what slaves hand on to fixed unknowns: there, minus the force of the supports.
+    /// The residual with the forces that slaves hand on to fixed unknowns: there, minus the force of the supports.
     pub fn supported<'r>(&self, full: &'r [f64]) -> Cow<'r, [f64]> {
         if self.leaning.is_empty() {
             return Cow::Borrowed(full);
@@ -224,7 +224,7 @@ impl Equations {
         parallel::map(self.roles.len(), ROWS, |number| value(&self.roles[number]))
     }
 
-    /// Lumped masses of unknowns gathered on equations: what slaves carry is lumped on their masters.
+    /// Lumped masses of unknowns gathered on equations: masses of slaves are lumped on their masters.
     pub fn lump(&self, mass: &[f64]) -> Vec<f64> {
         let mut carried = self.expand(&vec![1.0; self.len()]);
         carried.iter_mut().zip(mass).for_each(|(share, m)| *share *= m);

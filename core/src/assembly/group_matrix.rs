@@ -130,12 +130,12 @@ impl GroupMatrix {
         Some(&self.matrix).filter(|matrix| matrix.values.iter().any(|v| *v != 0.0))
     }
 
-    /// Of each lonely unknown, whether its row has an entry that is not zero.
+    /// For each inactive unknown, whether its row has a nonzero entry.
     pub fn lonely_rows_in_use(&self) -> Vec<bool> {
         self.lonely.iter().map(|&row| self.matrix.row(row as usize).1.iter().any(|v| *v != 0.0)).collect()
     }
 
-    /// Gives each row of a lonely unknown that is not in use its `diagonal`.
+    /// Sets the `diagonal` of each row of an inactive unknown that is not in use.
     pub fn set_idle_diagonal(
         &mut self,
         in_use: &[bool],

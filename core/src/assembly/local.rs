@@ -50,7 +50,7 @@ fn evaluate_runs<'a>(
     Ok(systems)
 }
 
-/// Those of `count` entities that are evaluated here, in runs of at most [`CHUNK`].
+/// Indices of `count` entities that are evaluated here, in runs of at most [`CHUNK`].
 pub(super) fn own_runs(count: usize, is_own: impl Fn(usize) -> bool) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for at in (0..count).filter(|&at| is_own(at)) {

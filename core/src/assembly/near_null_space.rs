@@ -1,4 +1,4 @@
-//! Motions that elements hardly resist: what multigrid has to carry to the coarser levels.
+//! Motions that elements hardly resist: multigrid has to carry them to the coarser levels.
 
 use zelus_linear_algebra::parallel;
 

@@ -1,4 +1,4 @@
-//! Which items share a group with each item, as the nodes of elements do.
+//! Items that share a group with each item, as the nodes of elements do.
 
 use zelus_linear_algebra::parallel;
 
@@ -59,7 +59,7 @@ impl Neighbours {
         Self { starts, list }
     }
 
-    /// Those of an item.
+    /// Neighbours of an item.
     pub(super) fn of(&self, item: usize) -> &[u32] {
         &self.list[self.starts[item]..self.starts[item + 1]]
     }

@@ -63,7 +63,7 @@ impl Numbering {
         self.starts.partition_point(|&start| start <= number as usize) - 1
     }
 
-    /// What this rank owns of a vector over its equations.
+    /// Entries of a vector over its equations that this rank owns.
     pub fn own_of(&self, values: &[f64]) -> Vec<f64> {
         self.own.iter().map(|&e| values[e as usize]).collect()
     }

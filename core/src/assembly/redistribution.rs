@@ -18,12 +18,12 @@ use crate::Carrier;
 use crate::entities::MasslessNodes;
 use crate::model::{ModelPart, Owner};
 
-/// Massless nodes and unknowns, and what stands in for them.
+/// Massless nodes and unknowns, and the inertial nodes that carry their mass.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Redistribution {
     /// The nodes asked for.
     wanted: MasslessNodes,
-    /// Those of them that are massless for the whole run.
+    /// Nodes that are massless for the whole run.
     lasting: Vec<(u32, Vec<(u32, f64)>)>,
     /// Massless nodes, with the nodes below them and their weights.
     nodes: Vec<(u32, Vec<(u32, f64)>)>,
@@ -162,7 +162,7 @@ impl Redistribution {
         }
     }
 
-    /// Pᵀ M (v − P v): the momentum of what the massless unknowns have beyond what is extrapolated to them, handed on.
+    /// Pᵀ M (v − P v): the momentum of the excess of massless unknowns over the extrapolated values, handed on.
     pub(super) fn excess(&self, values: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; values.len()];
         for ((number, below), row) in self.unknowns.iter().zip(&self.rows) {

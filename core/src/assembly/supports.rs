@@ -1,8 +1,8 @@
-//! Which nodes stand in for a node at the surface, and with which weights: linear fields are extrapolated exactly.
+//! Inertial nodes for a node at the surface, and their weights: linear fields are extrapolated exactly.
 //!
-//! Of the nodes of the elements around it, and of the elements around those, the nearest are taken until they span the space.
-//! With ω_i = 1/|x_i − x_c|⁴, mean m and covariance C of x_i − x_c, the weights are w_i = ω_i/Σω (1 − (x_i − x_c − m)·C⁻¹ m):
-//! of all that are exact, the smallest in the norm Σ w²/ω.
+//! The nearest nodes of the elements around it, and of the elements around those, are taken until they span the space. With ω_i =
+//! 1/|x_i − x_c|⁴, mean m and covariance C of x_i − x_c, the weights are w_i = ω_i/Σω (1 − (x_i − x_c − m)·C⁻¹ m): of all that are
+//! exact, the smallest in the norm Σ w²/ω.
 
 use rustc_hash::FxHashMap;
 

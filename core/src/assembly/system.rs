@@ -1,4 +1,4 @@
-//! What computes on a model part for one solver.
+//! Objects that compute on a model part for one solver.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::{BlockRequest, EntityBlock, Interaction, block_factory, is_place};
 use crate::model::{EntityKind, EntityTable, ModelPart, Role};
 
-/// Unknowns of a model part, the blocks over its entities, and what acts between bodies.
+/// Unknowns of a model part, the blocks over its entities, and the interactions between bodies.
 #[derive(Default)]
 pub struct System {
     /// Unknowns and their numbers.
@@ -16,13 +16,13 @@ pub struct System {
     pub elements: Vec<Box<dyn EntityBlock>>,
     /// Kernels over the conditions of this rank.
     pub conditions: Vec<Box<dyn EntityBlock>>,
-    /// What acts between bodies, e.g. contact.
+    /// Interactions between bodies, e.g. contact.
     pub interactions: Vec<Box<dyn Interaction>>,
 }
 
 impl System {
-    /// Makes the blocks from the tables of a part: one for each kind and properties, with the entities of this rank. Elements
-    /// take over what those of an earlier stage remember.
+    /// Makes the blocks from the tables of a part: one for each kind and properties, with the entities of this rank. Elements take over
+    /// the states of an earlier stage.
     ///
     /// # Errors
     /// Every block that cannot be made and every entity that cannot be computed with.

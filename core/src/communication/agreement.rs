@@ -1,7 +1,7 @@
 //! Errors that all ranks know of before any of them stops.
 //!
-//! Work that a rank does alone may fail there alone; [`Ranks::agree`] makes it fail everywhere. Errors
-//! of what every rank does alike need no agreement. Whatever is left ends all processes, see [`Ranks::end_after_failure`].
+//! Work that a rank does alone may fail there alone; [`Ranks::agree`] makes it fail everywhere. Errors that every rank meets alike need
+//! no agreement. Any other failure ends all ranks, see [`Ranks::end_after_failure`].
 
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use super::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Place, Result, Severity};
 
-/// How long a failed rank waits to hear that rank 0 has failed too, before it speaks for itself.
+/// Time that a failed rank waits for the failure of rank 0, before it prints its own message.
 const PATIENCE: Duration = Duration::from_secs(3);
 /// How long it then waits for rank 0 to close its files and end the run.
 const CLOSING: Duration = Duration::from_secs(600);
@@ -30,12 +30,12 @@ impl Ranks {
     /// The error that was kept, if any; no later agreement knows of it.
     ///
     /// # Errors
-    /// What [`Ranks::defer`] was given.
+    /// The error that [`Ranks::defer`] was given.
     pub fn deferred(&self) -> Result<()> {
         self.deferred_error().lock().unwrap_or_else(PoisonError::into_inner).take().map_or(Ok(()), Err)
     }
 
-    /// Does on rank 0 what only one rank may do, such as writing a file.
+    /// Runs on rank 0 an action that only one rank may do, such as writing a file.
     ///
     /// # Errors
     /// As `act`; with several ranks the error is kept until they next agree.
@@ -66,7 +66,7 @@ impl Ranks {
         self.agree_on(own).map(|()| value.expect("a rank without a value has an error"))
     }
 
-    /// That no rank has an error; collective.
+    /// Agrees that no rank has an error; collective.
     fn agree_on(&self, own: Option<Error>) -> Result<()> {
         if !self.any(own.is_some()) {
             return Ok(());
@@ -101,7 +101,7 @@ impl Ranks {
         }
     }
 
-    /// Adds up what the ranks have, in their order; collective.
+    /// Adds up the values of the ranks, in their order; collective.
     pub fn sum(&self, values: &mut [f64]) {
         if self.size() > 1 && !values.is_empty() {
             let all = self.gather_counted(values, &vec![values.len(); self.size()]);
@@ -119,13 +119,13 @@ impl Ranks {
         sum[0]
     }
 
-    /// What to exchange so that rank 0 gets a list, and the others nothing.
+    /// Lists to exchange so that rank 0 gets `own`, and the others nothing.
     pub fn for_root<T>(&self, own: Vec<T>) -> Vec<Vec<T>> {
         let others = (1..self.size()).map(|_| Vec::new());
         std::iter::once(own).chain(others).collect()
     }
 
-    /// What every rank gives, by rank, on rank 0; nothing on the others. Collective.
+    /// The numbers of every rank, by rank, on rank 0; nothing on the others. Collective.
     pub fn to_root(&self, own: Vec<f64>) -> Vec<Vec<f64>> {
         if self.size() == 1 {
             return vec![own];
@@ -145,7 +145,7 @@ impl Ranks {
             .collect()
     }
 
-    /// What the first rank with something to say says; collective.
+    /// The text of the first rank that has one; collective.
     pub fn first_to_say(&self, own: Option<String>) -> Option<String> {
         if self.size() == 1 || !self.any(own.is_some()) {
             return own;
@@ -178,7 +178,7 @@ impl Ranks {
         self.size() == 1 || self.gather_equal_bytes(&own).chunks_exact(own.len()).all(|other| *other == own)
     }
 
-    /// The last act of a failed run on several processes: rank 0 says `message`, and all end with `code`.
+    /// The last act of a failed run on several ranks: rank 0 prints `message`, and all end with `code`.
     ///
     /// Another rank speaks only when rank 0 does not know of the failure.
     pub fn end_after_failure(&self, message: &str, code: u8) -> ! {

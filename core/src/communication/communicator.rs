@@ -1,31 +1,31 @@
-//! What processes can do together, and the process that is alone.
+//! Collective operations of ranks, and the single rank that needs none.
 
-/// How the processes of a run reach each other: MPI, or another way that a program brings.
+/// Communication of the ranks of a run: MPI, or another way that a program brings.
 ///
 /// `gather…`, `exchange…` and `or` are collective: every rank calls them, in the same order.
 pub trait Communicator: Send + Sync {
-    /// Number of this process, from 0.
+    /// Number of this rank, from 0.
     fn rank(&self) -> usize;
 
-    /// Number of processes.
+    /// Number of ranks.
     fn size(&self) -> usize;
 
-    /// What every rank gives, by rank.
+    /// The bytes of every rank, by rank.
     fn gather_bytes(&self, own: &[u8]) -> Vec<Vec<u8>>;
 
-    /// What every rank gives, by rank.
+    /// The numbers of every rank, by rank.
     fn gather_numbers(&self, own: &[f64]) -> Vec<Vec<f64>>;
 
-    /// What every rank gives, one after another; each gives as many bytes.
+    /// The bytes of every rank, one after another; each gives as many bytes.
     fn gather_equal_bytes(&self, own: &[u8]) -> Vec<u8>;
 
     /// Sets each bit that is set on any rank; collective.
     fn or(&self, bytes: &mut [u8]);
 
-    /// What every rank gives, one after another; rank r gives `counts[r]` numbers.
+    /// The numbers of every rank, one after another; rank r gives `counts[r]` numbers.
     fn gather_counted(&self, own: &[f64], counts: &[usize]) -> Vec<f64>;
 
-    /// What every rank gives, one after another; each gives as many numbers, few.
+    /// The numbers of every rank, one after another; each gives as many numbers, few.
     fn gather_equal_numbers(&self, own: &[f64]) -> Vec<f64> {
         self.gather_counted(own, &vec![own.len(); self.size()])
     }
@@ -33,10 +33,10 @@ pub trait Communicator: Send + Sync {
     /// As [`Communicator::gather_counted`], for rank 0 alone; the others get nothing.
     fn gather_to_root(&self, own: &[f64], counts: &[usize]) -> Vec<f64>;
 
-    /// Sends `parts[r]` to rank r; gives what each rank sent here.
+    /// Sends `parts[r]` to rank r; returns the numbers from each rank.
     fn exchange_numbers(&self, parts: &[Vec<f64>]) -> Vec<Vec<f64>>;
 
-    /// Sends `parts[r]` to rank r; gives what each rank sent here.
+    /// Sends `parts[r]` to rank r; returns the indices from each rank.
     fn exchange_indices(&self, parts: &[Vec<u32>]) -> Vec<Vec<u32>>;
 
     /// As [`Communicator::exchange_numbers`], where `counts` says how many numbers come from each rank: only those who send and
@@ -52,10 +52,10 @@ pub trait Communicator: Send + Sync {
     /// Whether rank 0 has said that the run failed; not collective.
     fn failure_is_announced(&self) -> bool;
 
-    /// Ends all processes at once with this exit code; not collective.
+    /// Ends all ranks at once with this exit code; not collective.
     fn abort(&self, code: u8) -> !;
 
-    /// These processes as PETSc sees them, which is started when it is not running; `None` where they are not those of
+    /// These ranks as PETSc sees them, which is started when it is not running; `None` where they are not those of
     /// MPI. Collective.
     #[cfg(feature = "petsc")]
     fn petsc(&self) -> Option<crate::diagnostics::Result<zelus_petsc::Communicator>> {
@@ -63,7 +63,7 @@ pub trait Communicator: Send + Sync {
     }
 }
 
-/// One process alone.
+/// One rank alone.
 pub(super) struct Serial;
 
 impl Communicator for Serial {

@@ -26,7 +26,7 @@ const BUSY: Duration = Duration::from_micros(50);
 /// The longest it then sleeps at a time.
 const NAP: Duration = Duration::from_millis(1);
 
-/// All processes that mpirun has started; dropped, this one leaves them.
+/// All ranks that mpirun has started; dropped, this one leaves them.
 pub(super) struct MpiWorld {
     rank: usize,
     size: usize,
@@ -60,7 +60,7 @@ pub(super) fn start() -> Result<MpiWorld> {
     })
 }
 
-/// Waits for what is under way.
+/// Waits for a request under way.
 fn wait_for<'a, D: ?Sized, S: Scope<'a>>(mut request: Request<'a, D, S>) {
     let start = Instant::now();
     while let Err(pending) = request.test() {
@@ -92,7 +92,7 @@ fn split<T: Clone>(all: &[T], counts: &[i32], starts: &[i32]) -> Vec<Vec<T>> {
 }
 
 impl MpiWorld {
-    /// All processes, once all of them are here.
+    /// All ranks, once all of them are here.
     ///
     /// MPI's own waits take a whole core each, which the ranks that are still at work may need.
     fn together(&self) -> SimpleCommunicator {

@@ -1,4 +1,4 @@
-//! The processes of a run as a value that is handed on with what they share.
+//! The ranks of a run as a value that is passed on with shared data.
 
 use std::fmt;
 use std::ops::Deref;
@@ -7,9 +7,9 @@ use std::sync::{Arc, Mutex};
 use super::communicator::{Communicator, Serial};
 use crate::diagnostics::Error;
 
-/// The processes that run together, as one of them sees them; clones are the same processes.
+/// The ranks that run together, as one of them sees them; clones are the same ranks.
 ///
-/// By default this process is alone.
+/// By default this rank is alone.
 #[derive(Clone)]
 pub struct Ranks(Arc<Together>);
 
@@ -20,7 +20,7 @@ struct Together {
 }
 
 impl Ranks {
-    /// The processes that `communicator` joins.
+    /// The ranks that `communicator` joins.
     pub fn new(communicator: impl Communicator + 'static) -> Self {
         Self(Arc::new(Together { communicator: Box::new(communicator), deferred: Mutex::default() }))
     }
@@ -77,7 +77,7 @@ impl fmt::Debug for Ranks {
     }
 }
 
-/// The same place among as many processes.
+/// The same place among as many ranks.
 impl PartialEq for Ranks {
     fn eq(&self, other: &Self) -> bool {
         (self.rank(), self.size()) == (other.rank(), other.size())

@@ -56,7 +56,7 @@ impl LocalUnknown {
     }
 }
 
-/// How the tangent of a block behaves, so that the framework can reuse what does not change.
+/// Behaviour of the tangent of a block, so that the framework can reuse a constant one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tangent {
     /// None at all: the block only loads.
@@ -69,7 +69,7 @@ pub enum Tangent {
     General,
 }
 
-/// Which parts of the local systems a caller wants.
+/// Requested parts of the local systems.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Want {
     /// The right-hand side only: external minus internal forces.
@@ -78,7 +78,7 @@ pub enum Want {
     Both,
     /// Only the external forces, e.g. body forces, of a block that has some apart ([`EntityBlock::has_external`]).
     External,
-    /// Only minus what is stored, of a block that stores by its own equation ([`EntityBlock::has_storage`]).
+    /// Only minus the stored quantity, of a block that stores by its own equation ([`EntityBlock::has_storage`]).
     Storage,
 }
 
@@ -138,9 +138,9 @@ pub struct EntityError {
     pub id: usize,
     /// Ids of its nodes.
     pub nodes: Vec<usize>,
-    /// What is the case.
+    /// The fact.
     pub fact: String,
-    /// What to do.
+    /// The remedy.
     pub remedy: &'static str,
 }
 
@@ -166,7 +166,7 @@ pub struct Gauss {
     pub shape: Vec<f64>,
 }
 
-/// What a block is made from.
+/// Arguments from which a block is made.
 pub struct BlockRequest<'a> {
     /// The registered kind.
     pub entry: &'static EntityKind,
@@ -279,7 +279,7 @@ pub trait EntityBlock: Send + Sync {
     /// Writes the damping matrices of `range`, force per velocity, into `out.lhs`; they stay the same.
     fn damping(&self, _view: &StepView<'_>, _range: Range<usize>, _out: &mut LocalSystems) {}
 
-    /// Whether the `at`-th entity remembers what it went through, as one that yields does.
+    /// Whether the `at`-th entity has a history, as one that yields does.
     fn remembers(&self, _at: usize) -> bool {
         false
     }
@@ -292,12 +292,12 @@ pub trait EntityBlock: Send + Sync {
         Ok(())
     }
 
-    /// What its entities remember, for the file of a saved run.
+    /// State of its entities, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
 
-    /// Takes up what its entities remembered in a saved run.
+    /// Restores the states of its entities from a saved run.
     ///
     /// # Errors
     /// The state of a block of other entities.
@@ -310,7 +310,7 @@ pub trait EntityBlock: Send + Sync {
         None
     }
 
-    /// Takes over what entities of an earlier stage's block remember, where it is of the same kind.
+    /// Takes over the states of entities from an earlier stage's block, where it is of the same kind.
     fn inherit(&mut self, _earlier: &dyn EntityBlock) {}
 
     /// A variable at the Gauss points of the `at`-th entity; `None` when the kind does not know it.
@@ -323,7 +323,7 @@ pub trait EntityBlock: Send + Sync {
         &[]
     }
 
-    /// Why the `at`-th entity cannot say what traction acts on its faces; `None` where [`EntityBlock::traction`] does.
+    /// Reason why the `at`-th entity cannot give the traction on its faces; `None` where [`EntityBlock::traction`] does.
     fn lacks_tractions(&self, _view: &StepView<'_>, _at: usize) -> Option<&'static str> {
         Some(NO_TRACTIONS)
     }
@@ -355,5 +355,5 @@ pub trait EntityBlock: Send + Sync {
     }
 }
 
-/// What entities without tractions say of it.
+/// Message of entities without tractions.
 pub(super) const NO_TRACTIONS: &str = "its stress is not stated as a function of the displacements of its nodes";

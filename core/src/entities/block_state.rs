@@ -1,4 +1,4 @@
-//! What the entities of a block remember, as it stands in a saved run: by the ids of the entities.
+//! State of the entities of a block, as it stands in a saved run: by the ids of the entities.
 
 use rustc_hash::FxHashMap;
 use serde::de::DeserializeOwned;
@@ -8,12 +8,12 @@ use zelus_linear_algebra::{Carrier, State, packed, stored_as_bytes};
 use super::block::EntityBlock;
 use crate::diagnostics::{Diagnostic, Result};
 
-/// What entities of one kind remember.
+/// State of entities of one kind.
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Self")]
 pub(super) struct BlockState {
     kind: String,
-    /// Of its entities.
+    /// Ids of its entities.
     ids: Vec<usize>,
     /// Where the bytes of each entity end.
     ends: Vec<usize>,
@@ -31,7 +31,7 @@ impl State for BlockState {
 }
 
 impl BlockState {
-    /// That of entities of a kind.
+    /// State of entities of a kind.
     pub(super) fn of(kind: &str, ids: &[usize], states: &[impl Serialize]) -> Self {
         let (mut bytes, mut ends) = (Vec::new(), Vec::with_capacity(states.len()));
         for state in states {
@@ -65,7 +65,7 @@ impl BlockState {
     }
 }
 
-/// What `blocks`, as they begin, are to remember of what those of all ranks that were did.
+/// States of `blocks` (as they begin), from the states of the earlier blocks of all ranks.
 ///
 /// # Errors
 /// Entities that no rank had; blocks whose state goes by no ids.

@@ -21,7 +21,7 @@ pub struct ConstraintRow<'a> {
     pub nodes: &'a Nodes,
 }
 
-/// Makes the relations of a row; the error says what is wrong with it.
+/// Makes the relations of a row; the error names its fault.
 pub type ConstraintFactory = fn(&ConstraintRow<'_>) -> Result<Vec<MasterSlaveConstraint>, String>;
 
 registered_kind! {

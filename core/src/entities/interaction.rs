@@ -1,4 +1,4 @@
-//! What acts between bodies and changes with the state: contact above all.
+//! Interactions between bodies that change with the state: contact above all.
 
 use std::ops::Range;
 
@@ -11,7 +11,7 @@ use super::pair_state::PairState;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::{Carriers, ModelPart};
 
-/// What the active-set stage of an iteration changed.
+/// Changes by the active-set update of an iteration.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SetChange {
     /// Ids of nodes that became active.
@@ -36,7 +36,7 @@ impl SetChange {
     }
 }
 
-/// What follows when the iteration has converged.
+/// Action after the iteration has converged.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outer {
     /// The step is solved.
@@ -54,17 +54,17 @@ pub enum Outer {
 /// Nodes whose mass others carry, ascending.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct MasslessNodes {
-    /// Those that have none for the whole run, where nodes that are not among them can carry it.
+    /// Nodes that are massless for the whole run, where other nodes can carry their mass.
     pub surface: Vec<u32>,
-    /// Of the others, those that have none in this step.
+    /// Other nodes that are massless in this step.
     pub near: Vec<u32>,
 }
 
 /// A participant in the solution of steps: contact, ties, constraints that switch, an observer.
 ///
-/// Of itself it only has a name and the ends of steps. What else it takes part in are capabilities, each a trait of its own
-/// that it gives out where it has it. The strategy calls them in the order in which they stand here. The model part they
-/// receive holds no interactions, so it can be read and changed freely.
+/// Its own methods are a name and the ends of steps. Its other roles are capabilities, each a trait of its own that it gives out where
+/// it has it. The strategy calls them in the order in which they stand here. The model part they receive holds no interactions, so it
+/// can be read and changed freely.
 pub trait Interaction: Send + Sync {
     /// Short name for the log.
     fn name(&self) -> &str;
@@ -98,13 +98,13 @@ pub trait Interaction: Send + Sync {
         Ok(())
     }
 
-    /// What it remembers between steps beside the fields of the model, for the file of a saved run.
+    /// State between steps beside the fields of the model, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
 
-    /// Takes up a saved state in place of [`Interaction::begin_step`] and what follows, once it is initialised and the fields
-    /// are those of the saved run.
+    /// Restores a saved state in place of [`Interaction::begin_step`] and later calls, once it is initialised and the fields are those
+    /// of the saved run.
     ///
     /// # Errors
     /// The state of another kind of interaction.
@@ -112,7 +112,7 @@ pub trait Interaction: Send + Sync {
         Ok(())
     }
 
-    /// Changes whenever what it wrote into [`ModelPart::constraints`] does; the equations are then derived again.
+    /// Version of its constraints in [`ModelPart::constraints`]: where it changes, the equations are derived again.
     fn constraints_version(&self) -> u64 {
         0
     }
@@ -147,7 +147,7 @@ pub trait Interaction: Send + Sync {
         None
     }
 
-    /// What it does now at a node of its own (index), in a word: "is open", "sticks", "slides"; `None` at other nodes.
+    /// Contact state at a node of its own (index), in a word: "is open", "sticks", "slides"; `None` at other nodes.
     fn node_state(&self, _node: u32) -> Option<&'static str> {
         None
     }
@@ -157,7 +157,7 @@ pub trait Interaction: Send + Sync {
         Vec::new()
     }
 
-    /// Warnings of what has not happened in any step, asked for once after the last.
+    /// Warnings of events that never happened in any step, asked for once after the last.
     fn last_messages(&self, _part: &ModelPart) -> Vec<Diagnostic> {
         Vec::new()
     }
@@ -209,8 +209,8 @@ pub trait Coupling {
     /// Blocks that act now.
     fn blocks(&self) -> Vec<&dyn EntityBlock>;
 
-    /// Of the `at`-th entity of the `block`-th of [`Coupling::blocks`]: the place of its pair in [`Interaction::pairs`], and which
-    /// of its nodes are of the second side; `None` where it acts on something else.
+    /// Of the `at`-th entity of the `block`-th of [`Coupling::blocks`]: the place of its pair in [`Interaction::pairs`], and the nodes
+    /// of the second side; `None` where it acts on something else.
     fn pair_of(&self, _block: usize, _at: usize) -> Option<(usize, Range<usize>)> {
         None
     }
@@ -223,8 +223,8 @@ pub trait Coupling {
         1.0
     }
 
-    /// What may be added to the tangent's diagonal of its unknowns where constraints are redundant, as by supports at
-    /// the edge of an interface; `None` where that must end the run.
+    /// Term for the tangent's diagonal of its unknowns where constraints are redundant, as by supports at the edge of an interface;
+    /// `None` where that must end the run.
     fn relaxation(&self) -> Option<f64> {
         None
     }
@@ -254,11 +254,11 @@ pub trait ActiveSet {
     /// The iteration has converged: the blocks of elements in that state, before [`ActiveSet::after_convergence`].
     fn look_at(&mut self, _part: &mut ModelPart, _elements: &[Box<dyn EntityBlock>]) {}
 
-    /// Writes into the fields what others read of it, pressures and slips, as they are in the present state; decides nothing and keeps
-    /// nothing of it, since that state may be one beside the iterates.
+    /// Writes its results into the fields, pressures and slips, as they are in the present state; decides nothing and keeps nothing of
+    /// it, since that state may be one beside the iterates.
     fn show(&mut self, _part: &mut ModelPart) {}
 
-    /// The iteration has converged: an outer loop, as Uzawa's, changes what the iteration held constant.
+    /// The iteration has converged: an outer loop, as Uzawa's, updates the quantities that the iteration held constant.
     ///
     /// # Errors
     /// A geometry that cannot be computed with.
@@ -281,7 +281,7 @@ pub trait FirstIterate {
     /// The nodes that follow prescribed displacements at once, ascending; `None` where the step begins as others do.
     fn moved_first(&self) -> Option<Vec<u32>>;
 
-    /// The step is restarted without its first iterate: keeps what the answer takes from it.
+    /// The step is restarted without its first iterate: keeps the values that the solution takes from it.
     ///
     /// Called in place of [`ActiveSet::after_update`]; [`ActiveSet::after_prediction`] follows.
     fn keep(&mut self, part: &mut ModelPart);
@@ -298,10 +298,10 @@ pub trait Massless {
 
 /// A state that a retried step must restore.
 pub trait Retry {
-    /// Keeps what a retried step must restore.
+    /// Saves the state that a retried step must restore.
     fn save(&mut self) {}
 
-    /// Brings back what [`Retry::save`] kept.
+    /// Restores the state of [`Retry::save`].
     fn restore(&mut self);
 
     /// Whether a step that fails again would next be solved by another method, whatever its length.
@@ -320,8 +320,8 @@ pub trait Observer {
 
 /// Unknowns of another system, another physics', that follow those of a strategy through its iterations.
 ///
-/// After each iteration they are brought into balance with the state found. The next increment then counts with what they would do to
-/// the forces: with unknowns u and forces r(u, T) of the strategy, and T of the follower, it solves
+/// After each iteration they are brought into balance with the state found. The next increment then includes their effect on the
+/// forces: with unknowns u and forces r(u, T) of the strategy, and T of the follower, it solves
 ///
 /// K δu = r + ∂r/∂T δT, δT = (∂T/∂u) δu
 ///
@@ -334,7 +334,7 @@ pub trait Follower {
     /// As [`SolutionStrategy::solve_step`](crate::strategies::SolutionStrategy::solve_step).
     fn follow(&mut self, part: &mut ModelPart, elements: &[Box<dyn EntityBlock>]) -> Result<Option<String>>;
 
-    /// Whether it reads what elements of the strategy have found in the present state, as plastic work.
+    /// Whether it reads results of the strategy's elements in the present state, as plastic work.
     fn reads_elements(&self) -> bool {
         false
     }

@@ -17,7 +17,7 @@ use super::view::StepView;
 use crate::diagnostics::{Report, Result, unfit};
 use crate::model::{EntityKind, Properties, Role};
 
-/// What a kernel is told of its entity, beside the step's fields.
+/// Data of its entity that a kernel gets, beside the step's fields.
 #[derive(Clone, Copy)]
 pub struct Gather<'a, const NODES: usize> {
     /// Index of the entity in the model part's table.
@@ -70,13 +70,13 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     /// The kernel for one block.
     ///
     /// # Errors
-    /// What the block's properties or data lack.
+    /// Properties or data that the block lacks.
     fn new(request: &BlockRequest<'_>) -> Result<Self>;
 
     /// State of an entity before the first step.
     ///
     /// # Errors
-    /// What the entity's properties lack, or a geometry that cannot be computed with.
+    /// Properties that the entity lacks, or an unusable geometry.
     fn state(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Result<Self::State, String>;
 
     /// How the tangent behaves.
@@ -126,7 +126,7 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     /// Adds the constant damping matrix row by row, force per velocity.
     fn damping(&self, _entity: &Gather<'_, NODES>, _state: &Self::State, _out: &mut [f64]) {}
 
-    /// Whether the entity remembers what it went through, as one that yields does.
+    /// Whether the entity has a history, as one that yields does.
     fn remembers(&self, _state: &Self::State) -> bool {
         false
     }
@@ -144,7 +144,7 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
         Ok(())
     }
 
-    /// Takes over what the entity remembered in an earlier stage.
+    /// Takes over the history of the entity from an earlier stage.
     fn inherit(&self, _state: &mut Self::State, _earlier: &Self::State) {}
 
     /// Whether a state read from a file can be that of an entity that begins with `own`, as lists of one length.
@@ -168,7 +168,7 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
         &[]
     }
 
-    /// Why the entity cannot say what traction acts on its faces; `None` where [`Kernel::traction`] does.
+    /// Reason why the entity cannot give the traction on its faces; `None` where [`Kernel::traction`] does.
     fn lacks_tractions(&self, _entity: &Gather<'_, NODES>) -> Option<&'static str> {
         Some(NO_TRACTIONS)
     }
@@ -293,7 +293,7 @@ fn nodes_of(request: &BlockRequest<'_>, size: usize) -> Vec<u32> {
     out
 }
 
-/// `of` each of so many entities, or what is wrong with them.
+/// Result of `of` for each of so many entities, or the fault of one.
 fn states_of<T: Send>(
     count: usize,
     of: &(dyn Fn(usize) -> Result<T, String> + Sync),

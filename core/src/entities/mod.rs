@@ -1,4 +1,4 @@
-//! What computes: blocks of like entities, interactions between bodies.
+//! Objects that compute: blocks of like entities, interactions between bodies.
 //!
 //! Dispatch happens once a block: a [`EntityBlock`] writes the local systems of a whole range of its entities into
 //! buffers of the caller. A method is a [`Kernel`], the mathematics of one entity; [`KernelBlock`] makes a block of it.

@@ -1,6 +1,6 @@
-//! What an interaction tells of one pair of bodies in an accepted state.
+//! State of one pair of bodies, as an interaction reports it after an accepted step.
 
-/// A pair of bodies that an interaction acts between, with what became of its first side; every node counts in one pair.
+/// A pair of bodies that an interaction acts between, with the state of its first side; every node counts in one pair.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PairState {
     /// Name for reports: the key in the deck and the parts.

@@ -1,4 +1,4 @@
-//! The registered elements and conditions: a kind of the mesh with what computes it.
+//! The registered elements and conditions: a kind of the mesh and the object that computes it.
 
 use std::ops::Deref;
 
@@ -12,7 +12,7 @@ use crate::registry::{self, Entry};
 /// Makes the block of entities of one kind.
 pub type BlockFactory = fn(&BlockRequest<'_>) -> Result<Box<dyn EntityBlock>>;
 
-/// What computes the entities of a kind.
+/// Objects that compute the entities of a kind.
 #[derive(Clone, Copy)]
 pub enum Build {
     /// A block of those of the mesh.
@@ -29,7 +29,7 @@ macro_rules! entity_entry {
         $(#[$doc])*
         pub struct $type {
             kind: EntityKind,
-            /// What computes its entities.
+            /// Object that computes its entities.
             pub build: Build,
         }
 
@@ -132,7 +132,7 @@ pub fn is_place(kind: &EntityKind) -> bool {
         && registry::find::<ElementEntry>(kind.name).is_some_and(|entry| matches!(entry.build, Build::Place))
 }
 
-/// What makes blocks of a registered kind; `None` for one that is not, for pairs and for places.
+/// Factory of blocks of a registered kind; `None` for one that is not registered, for pairs and for places.
 pub fn block_factory(kind: &EntityKind) -> Option<BlockFactory> {
     let build = match kind.role {
         Role::Element => registry::find::<ElementEntry>(kind.name)?.build,

@@ -1,4 +1,4 @@
-//! What kernels see of the model.
+//! The model as kernels see it.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ pub struct StepView<'a> {
 }
 
 impl ModelPart {
-    /// What kernels see: fields and step data, never the model.
+    /// The view of kernels: fields and step data, never the model.
     pub fn view(&self) -> StepView<'_> {
         StepView {
             nodes: &self.nodes,

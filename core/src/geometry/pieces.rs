@@ -17,7 +17,7 @@ pub const fn pieces(shape: Shape) -> &'static [&'static [usize]] {
     }
 }
 
-/// By what the size of a facet is to be divided for the share of one of its nodes: each piece is shared out evenly among its own.
+/// Divisor of the size of a facet for the share of one of its nodes: each sub-facet is shared out evenly among its own nodes.
 pub fn parts(shape: Shape, node: usize) -> f64 {
     let pieces = pieces(shape);
     if pieces.len() == 1 {

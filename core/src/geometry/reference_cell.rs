@@ -14,7 +14,7 @@ pub struct Facet {
     pub nodes: &'static [usize],
 }
 
-/// What never changes about a cell, whatever its node coordinates.
+/// Constant data of a cell, whatever its node coordinates.
 #[derive(Debug)]
 pub struct ReferenceCell {
     /// The shape the facts belong to.

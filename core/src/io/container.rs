@@ -1,5 +1,5 @@
-//! The file of a saved run: what it is, which version, of how many ranks, then of each rank how long its contents are and their
-//! checksum, then the contents, rank after rank.
+//! The file of a saved run: format, version and number of ranks; the length of each rank's contents and their checksum; then the
+//! contents, rank after rank.
 //!
 //! Numbers of the head are little-endian. Contents are values as bytes ([`packed`]), in which numbers keep their bits. All
 //! ranks stand in one file, which is replaced as a whole: no end of a run leaves files of two moments.
@@ -21,7 +21,7 @@ use crate::diagnostics::{Diagnostic, Error, Place, Result};
 const MARK: &str = "zelus saved run\n";
 /// How a saved run is known.
 pub(crate) const SAVED: Mark = Mark::Begins(&[MARK]);
-/// Version of the contents: one more with every change of what is saved.
+/// Version of the contents: one more with every change of the saved data.
 const VERSION: u32 = 6;
 /// Bytes before the lengths.
 const HEAD: usize = MARK.len() + 4 + 4;
@@ -30,7 +30,7 @@ const ENTRY: usize = 8 + 4;
 /// Most words that go from rank to rank at once.
 const AT_ONCE: usize = 1 << 24;
 
-/// Writes a saved run in place of what stands at `path`, once it is whole on the disk: on rank 0, what all ranks have. Collective.
+/// Writes a saved run of all ranks in place of the file at `path`, once it is whole on the disk, on rank 0. Collective.
 ///
 /// # Errors
 /// A disk that refuses.
@@ -66,12 +66,12 @@ pub fn write_saved(ranks: &Ranks, path: &Path, contents: &impl Serialize) -> Res
     } else {
         Ok(())
     };
-    // Of a disk that refuses the others hear once they have sent all.
+    // Other ranks learn of a full disk once they have sent all.
     while send().is_some() {}
     ranks.agree(written)
 }
 
-/// What a rank sends, in pieces: the rank, where they begin and end.
+/// Pieces that a rank sends: the rank, where they begin and end.
 fn pieces(rank: usize, length: usize) -> impl Iterator<Item = (usize, usize, usize)> {
     (0..length).step_by(4 * AT_ONCE).map(move |from| (rank, from, length.min(from + 4 * AT_ONCE)))
 }
@@ -90,7 +90,7 @@ pub struct SavedFile {
 }
 
 impl SavedFile {
-    /// Reads what the file is.
+    /// Reads the head of the file.
     ///
     /// # Errors
     /// A file that is not there, is no saved run, is one of another version or is cut short.
@@ -142,7 +142,7 @@ impl SavedFile {
         self.entries.len()
     }
 
-    /// What one of them has saved.
+    /// The saved data of one rank.
     ///
     /// # Errors
     /// Contents that are damaged, or that this program does not know.

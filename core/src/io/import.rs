@@ -20,7 +20,7 @@ use crate::model::{
     VariableKind, named,
 };
 
-/// Gives `read` what it must know of registered names.
+/// Gives `read` the registered names that it must know.
 pub(super) fn entity_names<R>(read: impl FnOnce(&EntityNames) -> R) -> R {
     let known = [kind_names(Role::Element), kind_names(Role::Condition)].concat();
     let nodes_of = |name: &str| {
@@ -92,7 +92,7 @@ pub fn shape_of_geometry(name: &str) -> Option<(Shape, usize)> {
 
 /// Puts the content of a document into `part`, sorted by id; gives the warnings.
 ///
-/// The document is one that was read (or is as good): ids are unique and references go to what exists.
+/// The document is one that was read (or is as good): ids are unique and references go to existing entities.
 ///
 /// # Errors
 /// Names of entities, variables, flags and laws that are not registered, and values that do not fit their variable,

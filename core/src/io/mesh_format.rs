@@ -9,11 +9,11 @@ use crate::model::ModelPart;
 use crate::parameters::{Defaults, Node, Object, Settings, Value};
 use crate::{register, registered_kind, registry};
 
-/// Reads a file into a document whose ids are unique and whose references go to what exists; gives the warnings with it.
-/// The settings are those of the format.
+/// Reads a file into a document whose ids are unique and whose references go to existing entities; gives the warnings with it. The
+/// settings are those of the format.
 pub type MeshReader = fn(&Path, &Settings) -> Result<(MdpaDocument, Vec<Diagnostic>)>;
 
-/// Writes a document; gives warnings of what the format cannot say.
+/// Writes a document; warns of contents that the format cannot hold.
 pub type MeshWriter = fn(&MdpaDocument, &Path) -> Result<Vec<Diagnostic>>;
 
 registered_kind! {
@@ -22,7 +22,7 @@ registered_kind! {
         build: MeshReader;
         /// Endings of its files, without the dot.
         endings: &'static [&'static str] = &[],
-        /// What writes it; `None` where it is read only.
+        /// Function that writes it; `None` where it is read only.
         write: Option<MeshWriter> = None,
     }
 }
@@ -63,7 +63,7 @@ pub fn format_of(path: &Path) -> Option<&'static MeshFormatEntry> {
 /// gives the warnings. Columns the part already has are kept and made longer.
 ///
 /// # Errors
-/// No such file; what the format says of it; names that are not registered.
+/// No such file; faults of the format; names that are not registered.
 pub fn read_mesh_as(
     format: &MeshFormatEntry,
     given: &Node,

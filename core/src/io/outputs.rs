@@ -9,9 +9,9 @@ use crate::diagnostics::{Diagnostic, Error, Result};
 
 /// Longest name of a file, in bytes, on the file systems in use.
 const LONGEST: usize = 255;
-/// What the label of a step and an ending take of a name.
+/// Bytes of a file name taken by the label of a step and the ending.
 const LABEL: usize = 40;
-/// What a disk must have left to begin with, in bytes.
+/// Least free space of a disk at the start, in bytes.
 const LEAST_SPACE: usize = 1 << 16;
 
 /// Folders with the bytes that were tried, and why they cannot be written there.
@@ -204,7 +204,7 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// Claims an output, and removes what a killed run has left of it half written.
+    /// Claims an output, and removes the incomplete file of a killed run.
     ///
     /// # Errors
     /// [`Error::System`] when another run has it, or a folder that cannot be made.
@@ -235,7 +235,7 @@ impl Claim {
             let is_own = |left: &str| left == name || of_series(left, &name);
             let writes = |process: &str| Path::new("/proc").join(process).exists();
             if left.is_some_and(|(left, process)| is_own(left) && !writes(process)) {
-                // What cannot be removed is in nobody's way.
+                // A file that cannot be removed is in nobody's way.
                 let _ = fs::remove_file(entry.path());
             }
         }

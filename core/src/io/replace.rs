@@ -9,7 +9,7 @@ use std::path::Path;
 /// Writes a file so that a reader sees the old content or the whole new one, never a part.
 ///
 /// Missing folders on the way are made; symbolic links are followed. The new content is on the disk before it takes the place of the
-/// old one. Of several ranks only the first writes.
+/// old one. Over several ranks only the first writes.
 ///
 /// # Errors
 /// [`Error::System`] when the disk refuses; the old content is then untouched. With several ranks the error is kept until
@@ -86,7 +86,7 @@ pub fn length_of(path: &Path) -> u64 {
     fs::metadata(path).map_or(0, |file| file.len())
 }
 
-/// Takes off a file what it has grown by beyond `length` bytes, as where a run goes on from before that.
+/// Cuts a file that has grown to `length` bytes, as where a run continues from an earlier state.
 ///
 /// # Errors
 /// A file that is not there or is shorter; with several ranks the error is kept until they next agree.

@@ -7,7 +7,7 @@ use crate::registry;
 /// The kind of laws, which applications declare.
 const LAW: &str = "constitutive_law";
 
-/// What the variable (or component) called `name` holds; `None` when there is none.
+/// Kind of the variable (or component) called `name`; `None` when there is none.
 pub(super) fn kind_of(name: &str) -> Option<VariableKind> {
     named(name).map(|named| match named {
         Named::Whole(_, kind) => kind,
@@ -15,7 +15,7 @@ pub(super) fn kind_of(name: &str) -> Option<VariableKind> {
     })
 }
 
-/// The error that says what was meant; the caller adds the place.
+/// The error that names the nearest variable; the caller adds the place.
 pub(crate) fn unknown_variable(name: &str) -> Diagnostic {
     let remedy = did_you_mean(name, variables().keys().copied());
     let remedy = remedy.unwrap_or_else(|| "`zelus list variable` shows the known ones".to_owned());

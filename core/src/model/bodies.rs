@@ -30,7 +30,7 @@ pub fn bodies_of_nodes(part: &ModelPart) -> Vec<Option<usize>> {
     let roots: Vec<usize> = (0..nodes as u32).map(|node| components.first(node) as usize).collect();
     let id = |node: usize| if used[node] { part.nodes.ids[node] as f64 } else { f64::MAX };
     let mut first: Vec<f64> = (0..used.len()).map(id).collect();
-    // Ranks tell each other of what is connected elsewhere, until nothing changes any more.
+    // Ranks tell each other of connections elsewhere, until nothing changes any more.
     loop {
         let mut of_root = vec![f64::MAX; used.len()];
         roots.iter().zip(&first).for_each(|(&root, id)| of_root[root] = of_root[root].min(*id));

@@ -19,7 +19,7 @@ pub struct MasterSlaveConstraint {
     /// How much of the slave's force each master takes where that is not its weight, as where friction goes with the
     /// constraint's force.
     pub forces: Option<Vec<f64>>,
-    /// What is added.
+    /// Constant c of u_slave = Σ w u_master + c.
     pub constant: f64,
     /// Whether it holds now.
     pub active: bool,

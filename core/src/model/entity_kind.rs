@@ -1,4 +1,4 @@
-//! What a mesh knows of a registered element or condition: its name and its shape.
+//! Name and shape of a registered element or condition, as a mesh knows it.
 
 use std::ops::Deref;
 
@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::geometry::Shape;
 use crate::registry::Entry;
 
-/// Which table of a model part an entity stands in.
+/// Table of a model part in which an entity stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Role {
     /// A piece of a body.
@@ -80,7 +80,7 @@ impl PartialEq for EntityKind {
     }
 }
 
-/// Finds the registered kinds; submitted by the module that holds the registry of what computes them.
+/// Finds the registered kinds; submitted by the module that holds the registry of entity blocks.
 pub struct KindFinder(pub fn(Role, &str) -> Option<&'static EntityKind>);
 
 inventory::collect!(KindFinder);
@@ -95,7 +95,7 @@ pub(super) fn write_kinds<S: Serializer>(kinds: &[&'static EntityKind], to: S) -
     (&names, places).serialize(to)
 }
 
-/// Reads what [`write_kinds`] has written.
+/// Reads the kinds that [`write_kinds`] has written.
 pub(super) fn read_kinds<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<&'static EntityKind>, D::Error> {
     let (names, places) = <(Vec<(Role, String)>, Vec<u32>)>::deserialize(from)?;
     let find = |(role, name): &(Role, String)| {

@@ -10,7 +10,7 @@ use super::index::Index;
 /// Elements or conditions in flat arrays; an index counts them in the order they were added.
 #[derive(Debug, Default, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EntityTable {
-    /// Ids; ascending for what the mesh file gives, later ones follow.
+    /// Ids; ascending for entities of the mesh file, later ones follow.
     pub ids: Vec<usize>,
     /// Registered kind of each.
     #[serde(serialize_with = "write_kinds", deserialize_with = "read_kinds")]

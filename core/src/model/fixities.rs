@@ -1,4 +1,4 @@
-//! Which unknowns of nodes are prescribed.
+//! Prescribed unknowns of nodes.
 
 use std::collections::BTreeMap;
 
@@ -41,7 +41,7 @@ impl Fixities {
         self.columns.iter().all(|(variable, column)| known(variable) && column.len() == count)
     }
 
-    /// Those of the chosen nodes.
+    /// Fixities of the chosen nodes.
     pub fn pick(&self, nodes: &[u32]) -> Self {
         let pick = |column: &Vec<bool>| nodes.iter().map(|&at| column[at as usize]).collect();
         Self { columns: self.columns.iter().map(|(variable, column)| (*variable, pick(column))).collect() }

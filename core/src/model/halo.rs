@@ -23,7 +23,7 @@ pub struct Halo {
 impl Halo {
     /// Replaces each value by the sum over all ranks that have the item, the same bits on each of them; collective.
     ///
-    /// The owner adds what comes from the others in their order and passes the sum on.
+    /// The owner adds the values of the others in their order and passes the sum on.
     pub fn sum(&self, values: &mut [f64]) {
         self.collect(values, 0.0, |own, other| own + other);
         self.spread(values);

@@ -18,7 +18,7 @@ struct Places {
     count: usize,
     /// By id, or [`NONE`].
     listed: Vec<u32>,
-    /// Those of ids that were too large for the list when they came.
+    /// Ids that were too large for the list when they came.
     others: FxHashMap<usize, u32>,
 }
 

@@ -1,4 +1,4 @@
-//! The whole of a part that several ranks have shares of: what [`ModelPart::keep`] has taken apart.
+//! Joins the shares of ranks to the whole part: the inverse of [`ModelPart::keep`].
 
 use super::entity_table::EntityTable;
 use super::geometries::Geometries;
@@ -8,7 +8,7 @@ use super::sub_part::SubPart;
 
 /// Where the entities of all shares, one share after another, are in the whole part.
 struct Places {
-    /// Of each entity of the shares.
+    /// New index of each entity of the shares.
     new: Vec<u32>,
     /// For each entity of the whole its owner's.
     chosen: Vec<u32>,
@@ -116,7 +116,7 @@ impl ModelPart {
         Ok(all)
     }
 
-    /// The same cut down to what `share` has, which is a share of the same mesh.
+    /// The same part cut down to the entities of `share`, which is a share of the same mesh.
     ///
     /// # Errors
     /// Nodes or entities that are not here.

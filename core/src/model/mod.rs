@@ -76,7 +76,7 @@ use crate::diagnostics::{Diagnostic, Result};
 /// All root model parts of a run by name; stages share it.
 #[derive(Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Model {
-    /// The processes of the run.
+    /// The ranks of the run.
     #[serde(skip)]
     pub ranks: Ranks,
     /// Root parts by name.
@@ -84,7 +84,7 @@ pub struct Model {
 }
 
 impl Model {
-    /// The same model, as read from a file, of these processes.
+    /// The same model, as read from a file, of these ranks.
     #[must_use]
     pub fn shared_by(mut self, ranks: &Ranks) -> Self {
         self.ranks = ranks.clone();

@@ -1,4 +1,4 @@
-//! A model part: the mesh, its data, and its named sub parts. It knows nothing of what computes on it.
+//! A model part: the mesh, its data, and its named sub parts. It knows nothing of the objects that compute on it.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -55,10 +55,10 @@ pub struct ModelPart {
     pub tree: SubPart,
     /// Linear relations between unknowns.
     pub constraints: Vec<MasterSlaveConstraint>,
-    /// The processes that have this part, in whole or in shares.
+    /// The ranks that have this part, in whole or in shares.
     #[serde(skip)]
     pub ranks: Ranks,
-    /// What this rank has of a mesh that several share; `None` when this process computes everything.
+    /// Share of this rank in a distributed mesh; `None` when this rank computes everything.
     pub share: Option<Share>,
 }
 

@@ -25,9 +25,9 @@ pub struct Nodes {
     pub values: Fields,
     /// Flags.
     pub flags: Flags,
-    /// What is prescribed.
+    /// Prescribed unknowns.
     pub fixities: Fixities,
-    /// How often the bodies have changed their shape since the run began: what was made of initial positions is made anew then.
+    /// Number of shape changes of the bodies since the run began: data from initial positions are then made anew.
     #[serde(default)]
     pub reshaped: u64,
     #[serde(skip)]

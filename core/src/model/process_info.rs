@@ -1,4 +1,4 @@
-//! What the whole model shares in a step: time, counters and named numbers.
+//! Data of a step that the whole model shares: time, counters and named numbers.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! How the unknowns of applications move: the columns of their derivatives by time, and of what goes with them.
+//! Rates of the unknowns of applications: the columns of their derivatives by time, and of related quantities.
 
 use std::collections::BTreeMap;
 use std::sync::LazyLock;
@@ -18,7 +18,7 @@ pub struct Rates {
     pub second: Option<&'static str>,
     /// Its first derivative half a step later, in explicit integration.
     pub middle: Option<&'static str>,
-    /// What supports and constraints take up: minus the residual.
+    /// Reaction of supports and constraints: minus the residual.
     pub reaction: Option<&'static str>,
     /// The residual that explicit integration accelerates.
     pub out_of_balance: Option<&'static str>,
@@ -30,7 +30,7 @@ pub struct Rates {
     pub moves_mesh: bool,
 }
 
-/// Which of the columns that go with an unknown is meant.
+/// Selector of one of the columns that go with an unknown.
 pub type ColumnOf = fn(&Rates) -> Option<&'static str>;
 /// The unknown itself.
 pub const UNKNOWN: ColumnOf = |rates| Some(rates.unknown);
@@ -60,7 +60,7 @@ impl Rates {
         }
     }
 
-    /// Those of an unknown.
+    /// Rates of an unknown.
     pub fn of(unknown: &str) -> Option<&'static Self> {
         RATES.get(unknown).copied()
     }
@@ -70,7 +70,7 @@ impl Rates {
         RATES.values().copied()
     }
 
-    /// Those whose unknown has a column in these fields, with its number of components.
+    /// Rates whose unknown has a column in these fields, with its number of components.
     pub fn within(fields: &Fields) -> Vec<(&'static Self, usize)> {
         Self::all().filter_map(|rates| Some((rates, fields.get(rates.unknown)?.components))).collect()
     }

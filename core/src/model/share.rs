@@ -1,4 +1,4 @@
-//! What this process has of a mesh that several ranks share.
+//! Share of this rank in a distributed mesh.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ pub struct MeshSizes {
     pub conditions: usize,
 }
 
-/// What this rank has of the mesh; indices count what it has, in the order of the whole mesh.
+/// Share of this rank in the mesh; indices count its own entities, in the order of the whole mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Share {
     /// Rank that evaluates each element.
@@ -32,7 +32,7 @@ pub struct Share {
     pub common: Vec<bool>,
     /// Nodes that several ranks have.
     pub halo: Halo,
-    /// What all ranks have together.
+    /// Sizes of the whole mesh, over all ranks.
     pub whole: MeshSizes,
 }
 

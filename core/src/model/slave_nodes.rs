@@ -56,11 +56,11 @@ impl SlaveNodes {
 
     /// Indices of the slave nodes at these mesh nodes (ascending), which form the set of that name.
     ///
-    /// A set that is there with the same mesh nodes stays as it is, so that its values last from stage to stage and over a
-    /// restart. A set of that name with other mesh nodes gives way to the new one: values stay at mesh nodes that both have
-    /// and are zero elsewhere. Sets of other names keep their values, but those after a set that grows or shrinks get other
-    /// indices. Sets therefore change at the initialisation of a stage alone, before unknowns are numbered, and
-    /// [`SlaveNodes::range`] tells the indices once all sets are made.
+    /// A set that is there with the same mesh nodes stays as it is, so that its values last from stage to stage and over a restart. A
+    /// set of that name with other mesh nodes is replaced by the new one: values stay at mesh nodes that both have and are zero
+    /// elsewhere. Sets of other names keep their values, but those after a set that grows or shrinks get other indices. Sets therefore
+    /// change at the initialisation of a stage alone, before unknowns are numbered, and [`SlaveNodes::range`] tells the indices once
+    /// all sets are made.
     ///
     /// # Panics
     /// When mesh nodes do not strictly ascend.
@@ -147,7 +147,7 @@ impl SlaveNodes {
         }
     }
 
-    /// Those at kept mesh nodes, whose new indices ascend as the old ones do; [`u32::MAX`] stands for nodes that are dropped.
+    /// Slave nodes at kept mesh nodes, whose new indices ascend as the old ones do; [`u32::MAX`] stands for nodes that are dropped.
     /// Sets that lose all their nodes stay as empty ones.
     pub(super) fn kept(&self, new_nodes: &[u32]) -> Self {
         let new = |slave: u32| Some(new_nodes[self.mesh_node(slave) as usize]).filter(|&node| node != u32::MAX);

@@ -13,7 +13,7 @@ pub struct SolverInfo {
     pub linear: bool,
     /// Whether loads on bodies of small displacements follow the motion, as they do on others.
     pub follower_loads: bool,
-    /// Whether mesh or settings have errors, so that the part is not what the deck asks for: only other errors are looked for.
+    /// Whether mesh or settings have errors, so that the part is incomplete: only other errors are looked for.
     pub incomplete: bool,
     /// Whether the load factor is an unknown, as with arc length.
     pub unknown_load_factor: bool,

@@ -65,7 +65,7 @@ impl SubPart {
         out
     }
 
-    /// Drops what is not kept and renumbers the rest, here and below; [`u32::MAX`] stands for what is dropped.
+    /// Drops entities that are not kept and renumbers the rest, here and below; [`u32::MAX`] stands for dropped ones.
     pub fn renumber(&mut self, nodes: &[u32], elements: &[u32], conditions: &[u32]) {
         for (list, new) in
             [(&mut self.nodes, nodes), (&mut self.elements, elements), (&mut self.conditions, conditions)]
@@ -76,7 +76,7 @@ impl SubPart {
         self.children.values_mut().for_each(|child| child.renumber(nodes, elements, conditions));
     }
 
-    /// Adds what another part of the same name selects, here and below.
+    /// Adds the selection of another part of the same name, here and below.
     pub(super) fn join(&mut self, other: &Self) {
         self.nodes.extend(&other.nodes);
         self.elements.extend(&other.elements);

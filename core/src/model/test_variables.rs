@@ -1,4 +1,4 @@
-//! What tests of the framework solve for, as an application would register it.
+//! Unknowns of the framework's tests, registered as by an application.
 
 use crate::{register_flags, register_rates, register_variable};
 

@@ -1,4 +1,4 @@
-//! What the results of an application are looked at for, where a deck names nothing.
+//! Default output variables of an application, written where a deck names none.
 
 /// Results beside the unknowns and their reactions; an application registers its own by [`crate::register_usual_results`].
 pub struct UsualResults {
@@ -29,7 +29,7 @@ impl UsualResults {
     }
 }
 
-/// Registers what results are looked at for.
+/// Registers default output variables.
 ///
 /// ```ignore
 /// register_usual_results! { values: [], gauss: ["VON_MISES_STRESS"] }

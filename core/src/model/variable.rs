@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::names::{self, Name};
 
-/// What a variable holds.
+/// Kind of the values of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VariableKind {
     /// One number.
@@ -109,9 +109,9 @@ impl fmt::Display for ScalarVariable {
 pub struct VariableEntry {
     /// The name decks use.
     pub name: &'static str,
-    /// What it holds.
+    /// Kind of its values.
     pub kind: VariableKind,
-    /// What it is, its unit and sign.
+    /// Definition, unit and sign.
     pub about: &'static str,
 }
 
@@ -125,7 +125,7 @@ pub fn variables() -> &'static BTreeMap<&'static str, &'static VariableEntry> {
     &VARIABLES
 }
 
-/// What a name in a deck refers to.
+/// Variable or component that a name in a deck refers to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Named {
     /// A whole variable.

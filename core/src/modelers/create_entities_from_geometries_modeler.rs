@@ -9,7 +9,7 @@ use crate::model::{EntityKind, EntityTable, Model, ModelPart, Role};
 use crate::parameters::{Node, Settings};
 use crate::register;
 
-/// One row of a list: what is made of which part's geometries.
+/// One row of a list: the part whose geometries are used, and the kind of entity to make.
 struct Wanted {
     role: Role,
     part: String,

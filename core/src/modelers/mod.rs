@@ -1,4 +1,4 @@
-//! Modelers: what prepares the model of a stage before its solver looks at it, found by name.
+//! Modelers: operations on the model of a stage before its solver reads it, found by name.
 
 mod create_entities_from_geometries_modeler;
 mod delete_model_parts_modeler;

@@ -1,4 +1,4 @@
-//! What a modeler is, and how a list of them is run.
+//! The trait of modelers, and the run of a list of them.
 
 use std::path::Path;
 
@@ -40,7 +40,7 @@ registered_kind! {
 /// Runs the modelers of a deck.
 ///
 /// # Errors
-/// Names that are not registered, settings that do not fit, and what the modelers find wrong.
+/// Names that are not registered, unsuitable settings, and faults that the modelers find.
 pub fn run_modelers(list: &[Node], folder: &Path, model: &mut Model, report: &mut Report) -> Result<()> {
     let mut all = Vec::new();
     for item in list {

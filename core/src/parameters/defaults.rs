@@ -1,4 +1,4 @@
-//! What an object can be set to: every key with its default, its type and the comment that documents it.
+//! Settings of an object: every key with its default, its type and the comment that documents it.
 
 use std::path::Path;
 
@@ -25,7 +25,7 @@ pub struct Defaults {
 pub struct Entry {
     /// Dotted path of the key from the object's root.
     pub path: String,
-    /// What the value is, e.g. `a number`.
+    /// Type of the value, e.g. `a number`.
     pub kind: &'static str,
     /// The default as compact JSON.
     pub default: String,
@@ -160,7 +160,7 @@ impl Defaults {
         &self.name
     }
 
-    /// The comment above the opening brace: what the object is.
+    /// The comment above the opening brace: a description of the object.
     pub fn description(&self) -> &str {
         &self.description
     }
@@ -170,7 +170,7 @@ impl Defaults {
         &self.entries
     }
 
-    /// Old spellings that are accepted with a warning, by dotted path, each with what to do instead.
+    /// Old spellings that are accepted with a warning, by dotted path, each with its replacement.
     pub fn old_spellings(&self) -> impl Iterator<Item = (&'static str, String)> {
         self.deprecated.iter().map(|old| match old.what {
             Replacement::Renamed(new) | Replacement::Translated(new, _) => (old.old, format!("old spelling of {new}")),

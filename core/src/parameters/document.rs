@@ -16,7 +16,7 @@ use crate::diagnostics::{Diagnostic, Error, Place, Result};
 pub struct Document {
     /// The value the file holds.
     pub root: Node,
-    /// What deserves attention though the file can be read, e.g. a key given twice.
+    /// Warnings about a file that can be read, e.g. a key given twice.
     pub warnings: Vec<Diagnostic>,
 }
 

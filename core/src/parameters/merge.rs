@@ -56,7 +56,7 @@ impl Merger<'_> {
         insert_at(user, new, node, member.key_position);
     }
 
-    /// The user's object completed with defaults, which also take the place of what does not fit and is reported.
+    /// The user's object completed with defaults; they also replace unsuitable values, which are reported.
     pub(super) fn merge(&mut self, user: &Node, defaults: &Node, name: &str) -> Node {
         let (Some(given), Some(known)) = (user.as_object(), defaults.as_object()) else { return user.clone() };
         if known.is_empty() {

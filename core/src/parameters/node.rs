@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::diagnostics::{Diagnostic, Error, Place, Result, did_you_mean};
 
-/// What a node holds.
+/// Value of a node.
 #[derive(Debug, Clone)]
 pub enum Value {
     /// `null`.
@@ -26,7 +26,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// What the value is, with its article, for messages: `a string`.
+    /// Type of the value, with its article, for messages: `a string`.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Null => "null",
@@ -166,7 +166,7 @@ pub struct Node {
     pub(super) line: u32,
     pub(super) column: u32,
     pub(super) given: bool,
-    /// What the node holds.
+    /// The value.
     pub value: Value,
 }
 

@@ -22,7 +22,7 @@ impl Settings {
         Self::complete(user, defaults, report).and_then(|(settings, is_sound)| is_sound.then_some(settings))
     }
 
-    /// As [`Settings::validate`], where defaults take the place of what does not fit: whether all fits, too.
+    /// As [`Settings::validate`], where defaults replace unsuitable values; also returns whether all values are suitable.
     ///
     /// `None` when the settings are no object.
     pub fn complete(user: &Node, defaults: &Defaults, report: &mut Report) -> Option<(Self, bool)> {

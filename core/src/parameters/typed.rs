@@ -18,7 +18,7 @@ impl Settings {
 }
 
 impl Node {
-    /// The tree as a value of `T`; `name` is what messages call it.
+    /// The tree as a value of `T`, called `name` in messages.
     ///
     /// # Errors
     /// `invalid-value` at the key or item that does not fit, else at this node.

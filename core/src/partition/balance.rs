@@ -24,7 +24,7 @@ impl Share {
         if f64::from(fullest) <= IMBALANCE * mean || fullest < target + LEAST {
             return 0;
         }
-        // What has been given to a rank does not push out its own.
+        // A rank that receives pairs here keeps its own.
         let gives: Vec<bool> = load.iter().map(|&pairs| pairs > target).collect();
         let mut moved = 0;
         for node in 0..count.len() {

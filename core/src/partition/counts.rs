@@ -1,4 +1,4 @@
-//! What a partition costs each rank, counted on the mesh.
+//! Costs of a partition for each rank, counted on the mesh.
 //!
 //! Every rank keeps its own elements with their nodes, and all of the interfaces. With d unknowns a node, g ghosts, p copies
 //! that neighbours have of own nodes, C nodes that all ranks have, F slave facets of all ranks, about as many as slave nodes,
@@ -30,7 +30,7 @@ use crate::model::ModelPart;
 /// Products of the matrix in a Krylov iteration with multigrid: its own, a residual, and two smoothing steps on each way.
 pub const PRODUCTS: usize = 6;
 
-/// What one rank has and whom it meets.
+/// Entities of one rank, and its neighbours.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct RankCounts {
     /// Elements it evaluates.
@@ -51,7 +51,7 @@ pub struct RankCounts {
     pub cut_faces: usize,
     /// Facets of surfaces that may touch.
     pub facets: usize,
-    /// Those of them where pairs are evaluated.
+    /// Slave facets of this rank whose pairs are evaluated.
     pub slave_facets: usize,
     /// Slave facets whose nearest facing facet is on another rank.
     pub far_pairs: usize,
@@ -61,7 +61,7 @@ pub struct RankCounts {
     pub load: usize,
 }
 
-/// How often a step repeats what ranks send each other.
+/// Repetitions of exchanges between ranks in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Repeats {
     /// Newton iterations a step.
@@ -103,7 +103,8 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Counts what `partition` gives each rank of the mesh, where all ranks keep the `common` nodes with the elements at them.
+    /// Counts the entities that `partition` gives each rank of the mesh, where all ranks keep the `common` nodes with the elements at
+    /// them.
     pub fn new(part: &ModelPart, partition: &Partition, common: &[bool]) -> Self {
         let mut ranks = vec![RankCounts::default(); partition.ranks];
         let at = |element: u32| partition.elements[element as usize] as usize;
@@ -140,7 +141,7 @@ impl Counts {
         Self { ranks, imbalance, cut: partition.cut, entries, unknowns_per_node: space.max(1), common }
     }
 
-    /// What a rank sends in a step, by the table at the head of this file.
+    /// Bytes and messages that a rank sends in a step, by the table at the head of this file.
     pub fn traffic(&self, rank: usize, repeats: Repeats) -> Traffic {
         let own = &self.ranks[rank];
         let (newton, krylov, d) = (repeats.newton, repeats.krylov, self.unknowns_per_node);

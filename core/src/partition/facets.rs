@@ -14,7 +14,7 @@ use crate::vector3::{add, dot, norm, scale, sub};
 pub struct ContactFacet {
     /// The element behind it.
     pub element: u32,
-    /// Which surface it belongs to.
+    /// Surface to which it belongs.
     pub surface: u32,
     /// Whether pairs are evaluated here.
     pub slave: bool,

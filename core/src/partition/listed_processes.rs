@@ -1,4 +1,4 @@
-//! The processes that a deck lists, for what the partition asks of them.
+//! The processes that a deck lists, with their requests to the partition.
 
 use crate::parameters::{Node, Value};
 use crate::processes::ProcessEntry;

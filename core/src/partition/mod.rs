@@ -1,11 +1,10 @@
-//! Who owns what when several ranks share a mesh: elements by METIS, nodes and conditions after them.
+//! Ownership in a mesh that several ranks share: elements by METIS, nodes and conditions after them.
 //!
-//! [`partition`] cuts the mesh: elements that share a face are neighbours in a graph, and so are the elements behind
-//! facets that face each other, so that pairs tend to stay on one rank; elements behind slave facets weigh more. Rank 0
-//! computes it for all. [`surfaces`] asks the processes of a deck
-//! for the facets' surfaces, and [`Counts`]
-//! says what a partition costs. [`Shares`] gives what each rank keeps, with its [`Share`](crate::model::Share), and
-//! [`Share::balance_pairs`](crate::model::Share::balance_pairs) shares out pairs anew once they are known.
+//! [`partition`] cuts the mesh: elements that share a face are neighbours in a graph, and so are the elements behind facets that face
+//! each other, so that pairs tend to stay on one rank; elements behind slave facets weigh more. Rank 0 computes it for all.
+//! [`surfaces`] asks the processes of a deck for the facets' surfaces, and [`Counts`] the costs of a partition. [`Shares`] gives the
+//! share of each rank, with its [`Share`](crate::model::Share), and [`Share::balance_pairs`](crate::model::Share::balance_pairs) shares
+//! out pairs anew once they are known.
 
 mod balance;
 mod common;
@@ -175,7 +174,7 @@ fn graph(vertex_weights: Vec<u32>, edges: Vec<(u32, u32, u32)>) -> WeightedGraph
     graph
 }
 
-/// Of the ranks with an element at a node, the one that owns fewest so far owns it.
+/// The owner of a node is the rank with an element there that owns fewest nodes so far.
 fn node_owners(part: &ModelPart, elements: &[u32], elements_of_nodes: &Lists, ranks: usize) -> Vec<u32> {
     let mut owned = vec![0_usize; ranks];
     let mut owners = vec![0_u32; part.nodes.len()];

@@ -1,4 +1,4 @@
-//! What one rank keeps of a mesh that several share: its own elements with their nodes, and all of the interfaces.
+//! Share of one rank in a distributed mesh: its own elements with their nodes, and all of the interfaces.
 //!
 //! Every rank keeps the nodes of surfaces that may touch, of constraints, and the elements at them: search, active set and
 //! constraints are then decided everywhere alike. They grow with the surface of the bodies; the rest is shared out.
@@ -6,7 +6,7 @@
 use super::Partition;
 use crate::model::{Halo, MeshSizes, ModelPart, Share};
 
-/// Who keeps what of a mesh, of which one pass tells the lists of all ranks.
+/// Shares of all ranks in a mesh, listed in one pass.
 pub struct Shares<'a> {
     partition: &'a Partition,
     common: &'a [bool],
@@ -73,7 +73,7 @@ impl<'a> Shares<'a> {
         made
     }
 
-    /// What `rank` keeps of `part`, with who has what.
+    /// Share of `rank` in `part`, with the owners.
     pub fn of(&self, part: &ModelPart, rank: usize) -> ModelPart {
         let sorted = |lists: &[&[u32]]| {
             let mut all = lists.concat();

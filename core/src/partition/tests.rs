@@ -198,7 +198,7 @@ fn counts_of_a_halved_bar_are_those_of_its_section() {
     assert_eq!(right.ghost_entries, 13 * 13 * 2);
 }
 
-/// Every rank has its elements with their nodes, the interface with the elements at it, and knows who else has what.
+/// Every rank has its elements with their nodes, the interface with the elements at it, and knows the shares of the others.
 #[test]
 fn ranks_keep_their_elements_and_the_interface() {
     let whole = two_blocks(6);
@@ -278,7 +278,7 @@ fn slave_nodes_go_with_their_mesh_nodes_and_come_back() {
     assert!(joined.cut_like(&like).unwrap().slave_nodes == like.slave_nodes);
 }
 
-/// What is left out of a process's settings is its default, the whole skin, and parts that it needs whole are kept.
+/// A setting that a process leaves out has its default, the whole skin, and parts that it needs whole are kept.
 #[test]
 fn processes_say_what_every_rank_keeps() {
     let part = two_blocks(3);

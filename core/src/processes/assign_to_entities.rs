@@ -13,7 +13,7 @@ use crate::diagnostics::{Diagnostic, Report, Result, did_you_mean};
 use crate::model::{EntityTable, Fields, Model, ModelPart, Nodes, ScalarVariable};
 use crate::parameters::{Settings, SpaceTime};
 
-/// What a model part holds that can carry data.
+/// Entities of a model part that can carry data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Container {
     /// Nodes.
@@ -28,7 +28,7 @@ impl Container {
     const NAMES: [(&'static str, Self); 3] =
         [("nodes", Self::Nodes), ("conditions", Self::Conditions), ("elements", Self::Elements)];
 
-    /// What carries its data as loads.
+    /// Load carrier of its data.
     pub(super) fn carrier(self) -> LoadCarrier {
         match self {
             Self::Nodes => LoadCarrier::Nodes,
@@ -58,7 +58,7 @@ impl Container {
     }
 }
 
-/// What one number of the data is set to.
+/// Value of one number of the data.
 #[derive(Debug, Clone)]
 pub struct EntityComponent {
     /// The number.
@@ -72,9 +72,9 @@ pub struct EntityComponent {
 pub struct AssignToEntities {
     /// Where and when.
     pub target: Target,
-    /// On what.
+    /// Containers to assign to.
     pub containers: Vec<Container>,
-    /// What.
+    /// Values to assign.
     pub components: Vec<EntityComponent>,
     /// Axes of the functions.
     pub axes: Option<LocalAxes>,
@@ -153,7 +153,7 @@ pub(super) fn centre(nodes: &[u32], positions: &[[f64; 3]]) -> [f64; 3] {
 }
 
 impl AssignToEntities {
-    /// Why nothing acts by what is set on conditions, where that is so.
+    /// Reason why the values set on conditions have no effect, where that is so.
     fn idle(&self, part: &ModelPart) -> Result<Option<String>> {
         if self.containers != [Container::Conditions] {
             return Ok(None);

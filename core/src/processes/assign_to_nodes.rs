@@ -14,7 +14,7 @@ use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::model::{Model, ModelPart, Rates, ScalarVariable};
 use crate::parameters::SpaceTime;
 
-/// What is prescribed for one unknown.
+/// Value prescribed for one unknown.
 #[derive(Debug, Clone)]
 pub struct NodalComponent {
     /// The unknown.
@@ -30,7 +30,7 @@ pub struct NodalComponent {
 pub struct AssignToNodes {
     /// Where and when.
     pub target: Target,
-    /// What.
+    /// Values to assign.
     pub components: Vec<NodalComponent>,
     /// Axes of the functions.
     pub axes: Option<LocalAxes>,

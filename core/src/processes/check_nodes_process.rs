@@ -17,7 +17,7 @@ use crate::register;
 /// Differences told in full; more are counted.
 const TOLD: usize = 5;
 
-/// What nodes of a part must have at the end of each step of an interval.
+/// Values that nodes of a part must have at the end of each step of an interval.
 struct CheckNodes {
     target: Target,
     expected: Vec<(ScalarVariable, ScalarValue)>,

@@ -1,4 +1,4 @@
-//! Which way a number given to faces acts: what the faces' own conditions make of the number one.
+//! Direction of a load on faces, by the force of the faces' own conditions under a unit value.
 //!
 //! Face pressures have opposite signs in the plane and in space, as in Kratos, and follow the order of a face's nodes; a deck that
 //! means to press may pull. Numbers of which faces make no force along their normals are passed over.
@@ -18,7 +18,7 @@ struct Faces {
     pulled: usize,
 }
 
-/// What to say where `variable` pulls at some of the `conditions`; `sign` is that of the value where it is a constant.
+/// Warning where `variable` pulls at some of the `conditions`; `sign` is that of the value where it is a constant.
 pub(super) fn pulling(
     part: &mut ModelPart,
     conditions: &[u32],

@@ -1,4 +1,4 @@
-//! What is done at fixed points of the stage loop: the [`Process`] trait and the framework's own processes.
+//! Actions at fixed points of the stage loop: the [`Process`] trait and the framework's own processes.
 //!
 //! Each file named `*_process.rs` is one registered process, found by its own name; its settings and their defaults are
 //! the file of that name in `configs/processes/`. They share two workers: [`AssignToNodes`] for values and fixities of

@@ -1,4 +1,4 @@
-//! What a process prescribes and what it loads, asked before anything runs.
+//! Prescribed unknowns and loads of a process, asked for before anything runs.
 
 use crate::diagnostics::Place;
 use crate::entities::ConditionEntry;
@@ -17,7 +17,7 @@ pub struct Prescription {
     pub values: Vec<(u32, Option<f64>)>,
 }
 
-/// What carries the loads of a process.
+/// Carrier of the loads of a process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LoadCarrier {
     /// Nodes, in columns with history.
@@ -41,7 +41,7 @@ pub struct Load {
     pub interval: Interval,
     /// The numbers that it sets.
     pub variables: Vec<ScalarVariable>,
-    /// What it sets them on.
+    /// Carrier of the loads.
     pub on: LoadCarrier,
     /// Their places there, ascending.
     pub members: Vec<u32>,

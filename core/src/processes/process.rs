@@ -1,4 +1,4 @@
-//! The trait of processes, and what one is made from.
+//! The trait of processes, and the request from which one is made.
 
 use std::path::{Path, PathBuf};
 
@@ -29,7 +29,7 @@ pub trait Process: Send {
         Ok(())
     }
 
-    /// What acts between bodies by its doing, and on which part: asked once, after [`Process::initialize`].
+    /// Interaction between bodies that the process makes, and its part: asked once, after [`Process::initialize`].
     ///
     /// # Errors
     /// As [`Process::initialize`].
@@ -55,7 +55,7 @@ pub trait Process: Send {
         true
     }
 
-    /// Loads that it gives to a root part, each in place of what an earlier process gave there.
+    /// Loads that it gives to a root part; each replaces that of an earlier process there.
     fn loads(&self, _part: &ModelPart) -> Vec<Load> {
         Vec::new()
     }
@@ -111,7 +111,7 @@ pub trait Process: Send {
         Ok(())
     }
 
-    /// Writes output; gives the path of what a user would open, to be named at the end of the run.
+    /// Writes output; returns the path of the file to open, to be named at the end of the run.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -140,12 +140,12 @@ pub trait Process: Send {
         None
     }
 
-    /// What it remembers between steps, for the file of a saved run.
+    /// State between steps, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
 
-    /// Takes up a saved state in place of [`Process::before_loop`]; files that grow lose what was added since it was saved.
+    /// Restores a saved state in place of [`Process::before_loop`]; files that grow are cut to their length at the time of saving.
     ///
     /// # Errors
     /// The state of another kind of process; a file that is no longer there.
@@ -185,7 +185,7 @@ pub trait Process: Send {
     }
 }
 
-/// What a process is made from.
+/// Arguments from which a process is made.
 pub struct ProcessRequest<'a> {
     /// Its registered entry.
     pub entry: &'static Entry,

@@ -120,7 +120,7 @@ fn read_csv(node: &Node) -> Result<Table> {
     parse_csv(&std::fs::read_to_string(&path).map_err(unreadable)?, &csv, &path)
 }
 
-/// What stands in a table for a value that is missing.
+/// Entries of a table that stand for a missing value.
 const NOT_AVAILABLE: [&str; 5] = ["", "n/a", "na", "nan", "-"];
 
 fn parse_csv(text: &str, csv: &CsvSettings, path: &Path) -> Result<Table> {

@@ -1,4 +1,4 @@
-//! What the settings of a process name: its model part, its variable, a file.
+//! Targets in the settings of a process: its model part, its variable, a file.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::model::{
 use crate::parameters::{Defaults, Interval, Node, Settings};
 use crate::registry::Entry;
 
-/// What most processes share: a part of the model, a time span, and the place in the deck to blame.
+/// Data that most processes share: a part of the model, a time span, and the place in the deck to blame.
 #[derive(Debug, Clone)]
 pub struct Target {
     /// Full dotted path of the model part.
@@ -93,7 +93,7 @@ impl Target {
     }
 }
 
-/// What else is wrong with the parameters of a process that could not be made: the part and the variable that they name.
+/// Other faults in the parameters of a process that could not be made: the part and the variable that they name.
 pub fn other_problems(entry: &Entry, parameters: &Node, model: &Model) -> Vec<Diagnostic> {
     let mut problems = Report::new();
     let Ok(defaults) = Defaults::parse(entry.name, entry.defaults) else { return Vec::new() };
@@ -179,7 +179,7 @@ pub(super) fn vector_variable(settings: &Settings) -> Result<[ScalarVariable; 3]
     }
 }
 
-/// An error where what constraints relate is not an unknown of the system; `place` is where the deck names it.
+/// An error where constraints relate a variable that is not an unknown of the system; `place` is where the deck names it.
 ///
 /// # Errors
 /// `not-an-unknown`.

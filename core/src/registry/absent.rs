@@ -6,13 +6,13 @@ pub struct Absent {
     pub kind: &'static str,
     /// Beginnings of the names.
     pub stems: &'static [&'static str],
-    /// What to use instead.
+    /// The replacement to use.
     pub remedy: &'static str,
 }
 
 inventory::collect!(Absent);
 
-/// What to use instead of a known name that is not there; of several beginnings the longest counts.
+/// Replacement of a known name that is not there; of several beginnings the longest counts.
 pub fn instead_of(kind: &str, name: &str) -> Option<&'static str> {
     let all = inventory::iter::<Absent>().filter(|absent| absent.kind == kind);
     let known = all.flat_map(|absent| absent.stems.iter().map(|stem| (*stem, absent.remedy)));

@@ -1,4 +1,4 @@
-//! What every registered name has, whatever it stands for.
+//! Data of every registered name, whatever it stands for.
 
 /// A registered name: words, settings and place.
 #[derive(Clone, Copy)]
@@ -7,7 +7,7 @@ pub struct Entry {
     pub name: &'static str,
     /// Other names of the same thing.
     pub aliases: &'static [&'static str],
-    /// What it is, in a sentence.
+    /// Description, in a sentence.
     pub about: &'static str,
     /// Where its mathematics comes from: equation or literature.
     pub source: &'static str,

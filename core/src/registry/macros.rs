@@ -3,7 +3,7 @@
 /// Registers one object under its name: the last lines of its file.
 ///
 /// The first word is the type of the entry. `aliases`, `about`, `source`, `defaults` and `like` are fields of every
-/// [`Entry`](crate::registry::Entry); `build` makes the object; what else there is are methods of the entry's type.
+/// [`Entry`](crate::registry::Entry); `build` makes the object; further facts are methods of the entry's type.
 ///
 /// ```ignore
 /// register! { ProcessEntry "assign_flag_process",
@@ -49,7 +49,7 @@ macro_rules! register {
     };
 }
 
-/// Registers beginnings of names that are known and not there, with what to use instead.
+/// Registers beginnings of names that are known and not there, each with its replacement.
 ///
 /// ```ignore
 /// register_absent! { ElementEntry ["Shell", "Sprism"] => "use solid elements, three or more across the thickness" }
@@ -62,8 +62,8 @@ macro_rules! register_absent {
     };
 }
 
-/// Declares a kind of thing that decks name: the type of its entries, the word of `zelus list`, the code of the error for
-/// an unknown name, what an entry holds to make its object, and further facts with the values they have where none is given.
+/// Declares a kind of thing that decks name: the type of its entries, the word of `zelus list`, the code of the error for an unknown
+/// name, the factory of an entry, and further facts with the values they have where none is given.
 ///
 /// ```ignore
 /// registered_kind! {
@@ -87,7 +87,7 @@ macro_rules! registered_kind {
         $(#[$doc])*
         $vis struct $type {
             entry: $crate::registry::Entry,
-            /// What makes the object.
+            /// Function that makes the object.
             pub build: $build,
             $($(#[$field_doc])* pub $field: $field_type,)*
         }
@@ -116,7 +116,7 @@ macro_rules! registered_kind {
     };
 }
 
-/// Makes a type, which gives its [`Entry`](crate::registry::Entry) as what it dereferences to, the entries of a kind.
+/// Registers a type that dereferences to its [`Entry`](crate::registry::Entry) as the entries of a kind.
 #[macro_export]
 macro_rules! collect_kind {
     ($type:ident($word:literal, $unknown:literal)) => {

@@ -60,7 +60,7 @@ impl Kind {
         names
     }
 
-    /// What is said of a name that is not there: the nearest names, or what to use instead; the caller adds the place.
+    /// Error for a name that is not there: the nearest names, or the replacement; the caller adds the place.
     pub fn unknown(&self, name: &str) -> Diagnostic {
         let instead = instead_of(self.word, name).map(str::to_owned);
         let remedy = instead

@@ -1,4 +1,4 @@
-//! Keeps account of what acts in accepted steps: see [`Balance`].
+//! Balance of forces and energies in accepted steps: see [`Balance`].
 
 use serde::{Deserialize, Serialize};
 
@@ -158,7 +158,7 @@ impl<'a> Pairs<'a> {
         Self { part, centre, states, firsts, sums }
     }
 
-    /// Adds what an entity does to one unknown of a pair.
+    /// Adds the force of an entity on one unknown of a pair.
     fn push(&mut self, system: &System, push: Push) {
         let dof = system.dofs.dofs()[push.number as usize];
         if !dof.moves_mesh() {
@@ -204,7 +204,7 @@ impl<'a> Pairs<'a> {
     }
 }
 
-/// The forces of each kind over all unknowns; those of elements are what the others leave of the residual. Collective.
+/// The forces of each kind over all unknowns; those of elements are the remainder of the residual. Collective.
 fn forces(
     part: &ModelPart,
     system: &System,
@@ -242,10 +242,10 @@ fn sums(
     let variables: Vec<ScalarVariable> = system.dofs.variables().filter(with_reactions).collect();
     let mut columns: Vec<&'static str> = variables.iter().map(|variable| variable.column).collect();
     columns.dedup();
-    // Forces and moments of each kind, and of what is left over.
+    // Forces and moments of each kind, and of the remainder.
     let mut all = vec![[[[0.0; 3]; 2]; KINDS + 1]; columns.len()];
-    // What loads and supports feed in, what they take out, and the moments of both without regard to their sense: supports that
-    // push against each other alone add up to nothing, beside which all is large.
+    // Input and output by loads and supports, and the moments of both as absolute values: supports that push against each other alone
+    // add up to nothing, beside which all is large.
     let mut through = vec![[0.0; 3]; columns.len()];
     for variable in variables {
         let at = columns.iter().position(|column| *column == variable.column).expect("one of them");
@@ -298,7 +298,7 @@ fn sums(
 }
 
 impl Sums {
-    /// The kinds with what is left over, to which `between` is added; `others` are sizes to compare with.
+    /// The kinds with the remainder, to which `between` is added; `others` are sizes to compare with.
     fn of(kinds: [[f64; 3]; KINDS + 1], between: [f64; 3], others: impl Iterator<Item = f64>) -> Self {
         let [loads, elements, interactions, inertia, reactions, left] = kinds;
         let out_of_balance = add(left, between);

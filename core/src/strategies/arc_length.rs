@@ -54,7 +54,7 @@ impl ArcLengthSettings {
     }
 }
 
-/// How multipliers give way where constraints repeat each other, and whether they do in this step.
+/// Regularisation of multipliers where constraints are redundant, and whether it acts in this step.
 struct Relaxation {
     amount: Option<f64>,
     taken: bool,
@@ -70,7 +70,7 @@ pub struct ArcLength {
     radius: Option<[f64; 2]>,
     /// Increment of the last accepted step.
     last: Vec<f64>,
-    /// What acceptance of the present step keeps: factor, increment, iterations.
+    /// Values to keep when the present step is accepted: factor, increment, iterations.
     pending: Option<(f64, Vec<f64>, usize)>,
 }
 

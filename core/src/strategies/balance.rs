@@ -1,4 +1,4 @@
-//! The balance of an accepted step: what acts, what holds, what is left over, and where the energy went.
+//! The balance of an accepted step: loads, reactions, remainder and energies.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,8 +15,8 @@ pub struct Balance {
     pub energies: Energies,
 }
 
-/// Sums of what acts on one unknown, over all nodes: loads + elements + interactions + inertia + reactions = 0 but for what is
-/// out of balance.
+/// Sums of forces on one unknown, over all nodes: loads + elements + interactions + inertia + reactions = 0 but for the out-of-balance
+/// remainder.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(remote = "Self")]
 pub struct UnknownBalance {
@@ -28,40 +28,41 @@ pub struct UnknownBalance {
     pub moments: Option<Sums>,
     /// Centre of the box around the initial mesh.
     pub centre: [f64; 3],
-    /// What goes through the body, of unknowns that move nothing, e.g. heat (power).
+    /// Flows through the body, of unknowns that move nothing, e.g. heat (power).
     #[serde(default)]
     pub flows: Option<Flows>,
 }
 
 left_out_of_json!(UnknownBalance, "flows");
 
-/// What goes in, out and stays: entering − leaving + elements + interactions = stored but for what is out of balance.
+/// Flows into, out of and within the body: entering − leaving + elements + interactions = stored but for the out-of-balance remainder.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Flows {
-    /// What loads and supports feed in, node by node.
+    /// Input by loads and supports, summed node by node (power).
     pub entering: f64,
-    /// What they take out.
+    /// Output by loads and supports (power).
     pub leaving: f64,
-    /// What the body keeps, below zero where it gives.
+    /// Rate of storage in the body, negative where it releases.
     pub stored: f64,
 }
 
-/// What adds up to nothing.
+/// Terms of the balance; their sum is zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sums {
     /// External forces of conditions and elements.
     pub loads: [f64; 3],
-    /// What supports and constraints to fixed unknowns carry.
+    /// Reactions of supports and of constraints to fixed unknowns.
     pub reactions: [f64; 3],
-    /// Internal forces: nothing but where elements hold to the ground, or turn around an axis; of heat, what flow carries in.
+    /// Internal forces: zero unless elements are connected to the ground or rotate about an axis; of heat, the convected inflow.
     pub elements: [f64; 3],
     /// Interactions on both sides: nothing where they act between bodies.
     pub interactions: [f64; 3],
-    /// Minus what inertia, damping and storage take up.
+    /// Minus the forces of inertia, damping and storage.
     pub inertia: [f64; 3],
-    /// What is left over on unknowns that nothing holds, and between the sides of pairs.
+    /// Remainder on unsupported unknowns, and between the sides of pairs.
     pub out_of_balance: [f64; 3],
-    /// Its size by that of the largest of the others, a pair's and what loads and supports push one way among them.
+    /// Its size relative to that of the largest of the others, including the force of a pair and the one-sided sums of loads and
+    /// supports.
     pub relative: f64,
 }
 
@@ -93,7 +94,7 @@ pub struct PairBalance {
 /// Energies since the stage began, of unknowns that have inertia; works by the trapezoidal rule over steps.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energies {
-    /// Work against internal forces: strain energy, and what materials have dissipated.
+    /// Work against internal forces: strain energy, and dissipation of materials.
     pub stored: f64,
     /// Work of loads.
     pub loads: f64,

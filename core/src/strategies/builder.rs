@@ -1,7 +1,7 @@
 //! How an assembled system reaches its linear solver: the builder-and-solver of a deck.
 //!
-//! Fixities and constraints are always eliminated during assembly; what a builder may do is change the system between
-//! assembly and solution, as scaling its rows does, by a solver around the deck's.
+//! Fixities and constraints are always eliminated during assembly. A builder may change the system between assembly and solution, as
+//! scaling its rows does, by a solver around the deck's.
 
 use zelus_linear_algebra::LinearSolver;
 
@@ -9,7 +9,7 @@ use crate::diagnostics::Result;
 use crate::parameters::Settings;
 use crate::{register, registered_kind};
 
-/// What a builder does.
+/// Action of a builder.
 #[derive(Clone, Copy)]
 pub enum Builder {
     /// The system goes to the solver as it is.

@@ -44,7 +44,7 @@ pub(super) fn fact(refused: NotCondensable, meaning: Meanings<'_>) -> String {
     }
 }
 
-/// What to do about it.
+/// The remedy.
 pub(super) fn remedy(refused: NotCondensable) -> &'static str {
     match refused {
         NotCondensable::OffNode { .. } => {

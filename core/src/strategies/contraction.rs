@@ -1,12 +1,12 @@
-//! Whether an iteration that has used up its number is on its way to the end, and whether one swings between two states.
+//! Decides whether Newton's iteration converges linearly (extend it) or oscillates between two states (cut the step).
 
 use super::records::IterationRecord;
 
 /// Largest ratio of two measures, one iteration apart, of a steady convergence.
 const RATE: f64 = 0.7;
 
-/// Whether `more` iterations, at the rate of the last two, take every measure to its tolerance: all that are not there fell by
-/// [`RATE`] or better in both, and no interaction changed state in them.
+/// Whether `more` iterations, at the convergence rate of the last two, take every measure to its tolerance. All measures above their
+/// tolerance fell by [`RATE`] or better in both, and no interaction changed state in them.
 pub(super) fn contracts(records: &[IterationRecord], more: usize) -> bool {
     let [.., first, second, last] = records else { return false };
     if [second, last].iter().any(|record| record.active_set_changes + record.stick_slip_changes > 0) {
@@ -19,11 +19,11 @@ pub(super) fn contracts(records: &[IterationRecord], more: usize) -> bool {
     })
 }
 
-/// Largest change, as a share, of a measure that comes back every other iteration.
+/// Largest relative change of a measure over two iterations that counts as oscillation.
 const SAME: f64 = 0.02;
 
-/// Whether the iteration goes to and fro between two states while no interaction changes its own: points that yield in the
-/// one and not in the other.
+/// Whether the iteration oscillates between two states while no interaction changes its own: points that yield in the one and not in
+/// the other.
 pub(super) fn swings(records: &[IterationRecord]) -> bool {
     let [.., a, b, c, d] = records else { return false };
     if [a, b, c, d].iter().any(|record| record.active_set_changes + record.stick_slip_changes > 0) {

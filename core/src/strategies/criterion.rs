@@ -1,4 +1,4 @@
-//! Convergence criteria: what they may look at, and what they say.
+//! Convergence criteria: their inputs and their verdict.
 
 use std::cell::LazyCell;
 
@@ -46,16 +46,16 @@ pub struct Measures<'a> {
     pub slave_nodes: &'a SlaveNodes,
     /// Unknowns.
     pub dofs: &'a DofTable,
-    /// Which unknowns are solved for.
+    /// Equations: the unknowns that are solved for.
     pub equations: &'a Equations,
-    /// Which unknowns this rank counts; `None` when it has all.
+    /// Unknowns that this rank counts; `None` when it has all.
     pub distribution: Option<&'a Distribution>,
     /// External minus internal forces.
     pub residual: &'a [f64],
     /// Residuals that a relative measure refers to: before the first solve, prescribed increments included, and after it.
     pub references: &'a [Vec<f64>],
-    /// Residual after the last iteration in which interactions changed state: what is left then of equations that did not
-    /// act before. `None` before the first such change.
+    /// Residual after the last iteration in which interactions changed state: the remainder of equations that did not act before.
+    /// `None` before the first such change.
     pub switched: Option<&'a [f64]>,
     /// Increment of the iteration.
     pub increment: &'a [f64],
@@ -134,13 +134,13 @@ pub(super) fn norms(
 
 /// Whether a residual norm is no larger than the round-off of the terms it is the sum of.
 ///
-/// Such a residual cannot fall further, whatever the tolerance. The bound is well above what round-off leaves: in the middle
-/// of it, chance would say how many iterations a step takes.
+/// Such a residual cannot fall further, whatever the tolerance. The bound is well above round-off: in the middle of it, chance would
+/// decide the number of iterations of a step.
 pub fn is_round_off(residual: f64, round_off: f64) -> bool {
     residual <= 16.0 * round_off
 }
 
-/// Whether an increment is no more than the last digits of what it is added to.
+/// Whether an increment is no more than the last digits of the value it is added to.
 pub fn is_last_digit(increment: f64, value: f64) -> bool {
     increment <= 16.0 * f64::EPSILON * value
 }
@@ -148,7 +148,7 @@ pub fn is_last_digit(increment: f64, value: f64) -> bool {
 /// One measured block.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Check {
-    /// What was measured, e.g. `residual`.
+    /// Measured quantity, e.g. `residual`.
     #[serde(deserialize_with = "names::read")]
     pub label: Name,
     /// Norm divided by its reference.
@@ -163,12 +163,12 @@ pub struct Check {
     pub converged: bool,
 }
 
-/// What a criterion says of an iteration.
+/// Verdict of a criterion on an iteration.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Verdict {
     /// Whether the iteration is good enough.
     pub converged: bool,
-    /// What was measured.
+    /// Measured quantities.
     pub checks: Vec<Check>,
 }
 
@@ -190,7 +190,7 @@ pub trait ConvergenceCriterion: Send {
     }
 }
 
-/// What a criterion is made from.
+/// Arguments from which a criterion is made.
 pub struct CriterionRequest<'a> {
     /// The solver settings, defaults filled in.
     pub settings: &'a Settings,

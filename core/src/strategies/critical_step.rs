@@ -6,7 +6,7 @@ use crate::assembly::{Assembler, DofTable};
 const PRODUCTS: usize = 100;
 /// Relative change of the eigenvalue at which the iteration stops.
 const CHANGE: f64 = 1e-4;
-/// The iteration reaches the largest eigenvalue from below; this is added for what it lacks.
+/// The iteration reaches the largest eigenvalue from below; this factor compensates for the rest.
 const MARGIN: f64 = 1.02;
 
 /// Estimates the longest stable step, 2/ω (√(1+ξ²) − ξ) with ξ = (α/ω + β ω)/2, in units of time.

@@ -48,7 +48,7 @@ pub struct ExplicitSettings {
     pub follow_prescribed: bool,
     /// Whether reactions are computed.
     pub compute_reactions: bool,
-    /// Whether reactions of supports hold what constraints hand on to them.
+    /// Whether reactions of supports include the forces that constraints hand on to them.
     pub reactions_of_constraints: bool,
     /// Whether nodes follow the unknown that moves the mesh.
     pub move_mesh: bool,
@@ -228,7 +228,7 @@ impl ExplicitStrategy {
         })
     }
 
-    /// What supports and constraints must carry: the residual less the inertia.
+    /// Force that supports and constraints must carry: the residual less the inertia.
     fn unbalanced(&self, part: &ModelPart, system: &System, residual: &[f64]) -> Vec<f64> {
         let acceleration = system.dofs.column(part, SECOND, 0);
         residual.iter().zip(acceleration).zip(&self.mass).map(|((r, a), m)| r - m * a).collect()

@@ -1,6 +1,6 @@
 //! The equations of all ranks added up on rank 0, where one direct solver serves them all.
 //!
-//! There they stand in the order in which one process would count them, so that its answer is that of one process.
+//! There they stand in the order in which one rank would count them, so that its solution is that of one rank.
 
 use std::sync::OnceLock;
 
@@ -23,17 +23,17 @@ pub(super) struct Gathered {
     solves: u64,
     /// As many threads as there are on the machine of rank 0, on rank 0.
     threads: OnceLock<Option<Pool>>,
-    /// What solvers that work where the rows are have in place of rank 0.
+    /// Distributed rows, for solvers that use them in place of rank 0.
     pub(super) shared: SharedRows,
     /// Solves where the rows are, in place of rank 0.
     #[cfg(feature = "petsc")]
     pub(super) petsc: Option<super::owned_rows::OwnedRows>,
 }
 
-/// What graphs here are stamped beyond those of one rank.
+/// Flag in the stamps of graphs gathered here, which tells them from graphs of one rank.
 const GATHERED: u64 = 1 << 32;
 
-/// Numbers that say what an equation is: place of its node, meaning, position.
+/// Numbers that describe an equation: place of its node, meaning, position.
 const NUMBERS: usize = 8;
 
 /// All equations on rank 0.
@@ -89,7 +89,7 @@ impl Gathered {
         false
     }
 
-    /// Brings rank 0 up to date with what the ranks have, as far as its stamps have changed; collective.
+    /// Brings rank 0 up to date with the data of the ranks, as far as its stamps have changed; collective.
     pub(super) fn update(&mut self, assembler: &Assembler, loads: Option<&Csr>, dofs: &DofTable, nodes: &Nodes) {
         let (ranks, own) = (assembler.ranks(), assembler.system());
         let Some(numbering) = assembler.numbering() else { return };
@@ -120,7 +120,7 @@ impl Gathered {
         out
     }
 
-    /// Gives every rank what it owns of a vector that rank 0 has; collective.
+    /// Gives every rank its own entries of a vector that rank 0 has; collective.
     pub(super) fn scatter(&self, ranks: &Ranks, whole: &[f64], numbering: &Numbering) -> Vec<f64> {
         let of = |number: usize| whole[self.whole.places[number] as usize];
         let parts: Vec<Vec<f64>> = match ranks.is_root() {
@@ -130,7 +130,7 @@ impl Gathered {
         ranks.exchange_numbers(&parts).swap_remove(0)
     }
 
-    /// Does what the other ranks wait for, with the threads of those on this machine.
+    /// Runs the work that the other ranks wait for, with the threads of those on this machine.
     pub(super) fn while_others_wait<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         let count = threads_while_others_wait();
         if count == parallel::threads() {
@@ -152,12 +152,12 @@ impl Gathered {
         None
     }
 
-    /// What the equations stand for, on rank 0.
+    /// Meaning of the equations, on rank 0.
     pub(super) fn meanings(&self) -> &[Meaning] {
         &self.whole.meanings
     }
 
-    /// What an equation stands for that [`Gathered::not_condensed`] or the solver of rank 0 names.
+    /// Meaning of an equation that [`Gathered::not_condensed`] or the solver of rank 0 names.
     pub(super) fn meaning(&self, equation: usize) -> Option<Meaning> {
         #[cfg(feature = "petsc")]
         if let Some(rows) = &self.petsc {
@@ -166,7 +166,7 @@ impl Gathered {
         self.whole.meanings.get(equation).copied()
     }
 
-    /// The whole system, on rank 0, and the tangents of follower loads. Its stamps are not those of what ranks share.
+    /// The whole system, on rank 0, and the tangents of follower loads. Its stamps are not those of the shared systems.
     pub(super) fn system<'a>(&'a self, own: &System<'a>) -> (System<'a>, Option<&'a Csr>) {
         let coupling = (self.coupling.sum.entries() > 0).then_some(&self.coupling.sum);
         let loads = (self.loads.sum.entries() > 0).then_some(&self.loads.sum);

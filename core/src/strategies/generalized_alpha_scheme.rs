@@ -1,9 +1,9 @@
 //! The generalised-α scheme: second order, with a chosen spectral radius ρ∞ at infinite frequency.
 //!
-//! M a_α + C v_α = (1 − α_f) F_{n+1} + α_f F_n with a_α = (1 − α_m) a_{n+1} + α_m a_n, v_α = (1 − α_f) v_{n+1} + α_f v_n
-//! and F all forces but those of inertia and damping, reactions included. α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), and
-//! Newmark's relations hold with γ = 1/2 − α_m + α_f, β = (1 − α_m + α_f)²/4. The code divides by 1 − α_f, so that the
-//! residual, its tangent and the reactions are those of t_{n+1}. F_n is what inertia and damping took up in step n.
+//! M a_α + C v_α = (1 − α_f) F_{n+1} + α_f F_n with a_α = (1 − α_m) a_{n+1} + α_m a_n, v_α = (1 − α_f) v_{n+1} + α_f v_n and F all
+//! forces but those of inertia and damping, reactions included. α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1), and Newmark's relations hold
+//! with γ = 1/2 − α_m + α_f, β = (1 − α_m + α_f)²/4. The code divides by 1 − α_f, so that the residual, its tangent and the reactions
+//! are those of t_{n+1}. F_n is the force of inertia and damping in step n.
 
 use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{Carrier, State, stored_as_bytes};

@@ -16,11 +16,11 @@ const CORRECTIONS: usize = 12;
 /// Residual relative to the right-hand side at which corrections stop.
 const ACCURACY: f64 = 1e-10;
 
-/// What a linear solve gave.
+/// Result of a linear solve.
 pub(super) struct Solved {
     /// Increment of the equations.
     pub increment: Vec<f64>,
-    /// Norm of what is left over that of the right-hand side.
+    /// Norm of the residual over that of the right-hand side.
     pub relative_residual: f64,
     /// Krylov iterations, or steps of refinement.
     pub iterations: usize,
@@ -41,7 +41,7 @@ pub(super) enum Failed {
 }
 
 impl Failed {
-    /// The same; what is singular says where nodes are that seem free, one of each part. Collective.
+    /// The same; a singular system also names nodes that seem free, one of each part. Collective.
     pub(super) fn in_part(self, part: &ModelPart) -> Self {
         let Self::Singular(why, ids) = self else { return self };
         let mut bodies: Vec<Option<&str>> = Vec::new();
@@ -189,7 +189,7 @@ fn solve_shared(
     solve(share, rhs)
 }
 
-/// What a rank knows of a solve that rank 0 did.
+/// Report on a rank other than 0 of a solve that rank 0 did.
 fn elsewhere() -> SolveReport {
     SolveReport {
         engine: "rank 0",
@@ -297,8 +297,8 @@ fn explain(error: &SolveError, system: Option<&System<'_>>, meaning: Meanings<'_
     }
     .unwrap_or_default();
     let remedy = if only_multipliers {
-        "more constraints act than the unknowns can obey, or inactive ones have no equation: remove some, or let a \
-         penalty impose them"
+        "the model is over-constrained, or a constraint has no active equation: remove constraints, or impose them by \
+         a penalty"
     } else {
         "some body can move freely: support it, or check that contact holds it from the first step"
     };

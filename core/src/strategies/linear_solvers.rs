@@ -10,11 +10,11 @@ use crate::model::ModelPart;
 use crate::parameters::{Node, Settings};
 use crate::{register, registered_kind, registry};
 
-/// What a linear solver is made from.
+/// Arguments from which a linear solver is made.
 pub struct LinearSolverRequest<'a> {
     /// `linear_solver_settings` of the deck.
     pub settings: &'a Settings,
-    /// What iterative engines do with multipliers.
+    /// Treatment of multipliers by iterative engines.
     pub multipliers: Multipliers,
     /// Relative residual below which an answer gains the iteration around it nothing.
     pub tolerance: f64,
@@ -37,7 +37,7 @@ registered_kind! {
     }
 }
 
-/// Share of the tolerance of the residual that an iterative engine may leave, and the bounds of what it is asked for.
+/// Factor of the residual's tolerance for an iterative engine, and the bounds of the result.
 const LEFT: f64 = 0.1;
 const TOLERANCES: [f64; 2] = [1e-10, 1e-7];
 
@@ -49,7 +49,7 @@ pub(crate) fn tolerance(residual: f64) -> f64 {
     (LEFT * residual).clamp(TOLERANCES[0], TOLERANCES[1])
 }
 
-/// The solver for `linear_solver_settings`, and a sentence saying which engine serves.
+/// The solver for `linear_solver_settings`, and a sentence that names the engine.
 ///
 /// # Errors
 /// An unknown name.
@@ -60,8 +60,8 @@ pub(crate) fn make(request: &LinearSolverRequest<'_>) -> Result<(Box<dyn LinearS
     let name = if name.is_empty() { "automatic" } else { name };
     let entry = registry::require::<LinearSolverEntry>(name).map_err(|d| d.at(settings.key_place("solver_type")))?;
     let solver = (entry.build)(request)?;
-    let asked = if given.is_empty() { "no linear solver named".to_owned() } else { format!("\"{given}\"") };
-    let says = format!("linear solver: {asked} is served by {}", solver.says());
+    let asked = if given.is_empty() { "none named in the deck".to_owned() } else { format!("for \"{given}\"") };
+    let says = format!("linear solver: {}; {asked}", solver.says());
     Ok((solver, says))
 }
 
@@ -89,7 +89,7 @@ pub(crate) fn unknowns_of_all(part: &ModelPart, system: &System) -> usize {
     if part.share.is_some() { part.ranks.total(own as f64) as usize } else { own }
 }
 
-/// What PETSc solves with on several ranks, and a sentence saying so; `None` where rank 0 shall solve for all.
+/// PETSc's solver for several ranks, and a sentence about it; `None` where rank 0 shall solve for all.
 ///
 /// `is_shared` tells that the deck's solver works where the rows are itself. `petsc_engine` names an engine, or is `"automatic"` or `"none"`; `petsc_options` are words of PETSc's own command line.
 ///
@@ -202,7 +202,7 @@ register! { LinearSolverEntry "automatic",
 }
 register! { LinearSolverEntry "amgcl",
     aliases: &["AMGCL", "amgcl_raw", "multigrid", "deflated_cg"],
-    about: "smoothed-aggregation multigrid with rigid motions, for conjugate gradients or GMRES",
+    about: "smoothed-aggregation multigrid with rigid-body modes, for conjugate gradients or GMRES",
     build: multigrid,
 }
 register! { LinearSolverEntry "cg",

@@ -1,4 +1,4 @@
-//! What an equation stands for, as messages name it.
+//! Meaning of an equation, as messages name it.
 
 use std::fmt;
 
@@ -46,7 +46,7 @@ impl Meaning {
         [variable as f64, self.node as f64, f64::from(u8::from(self.multiplier)), set as f64]
     }
 
-    /// What [`Meaning::pack`] made of a meaning.
+    /// The meaning that [`Meaning::pack`] has packed.
     pub fn unpack(numbers: &[f64], dofs: &DofTable) -> Option<Self> {
         let variable = dofs.variables().nth(numbers[0] as usize)?;
         let set = (numbers[3] as usize).checked_sub(1).and_then(|at| dofs.sets().get(at).copied());

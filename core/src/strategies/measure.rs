@@ -6,7 +6,7 @@ use super::criterion::{Block, Check, ConvergenceCriterion, Measures, Norm, Verdi
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
 
-/// What of the unknowns is measured.
+/// Measured quantity of the unknowns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// ‖r‖ against the largest norm before and after the first solve of the step.
@@ -28,9 +28,9 @@ impl Form {
 /// A tolerance relative to a reference, and one of the norm an unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerance {
-    /// Of the ratio.
+    /// Tolerance of the ratio.
     pub relative: f64,
-    /// Of the norm an unknown, in the unit of the variable.
+    /// Tolerance of the norm an unknown, in the unit of the variable.
     pub absolute: f64,
 }
 
@@ -58,11 +58,11 @@ impl Tolerance {
 /// of the deck, and hide the smaller numbers. Kratos sums them (`criterion_sums_variables`).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measure {
-    /// What is measured.
+    /// Measured quantity.
     pub form: Form,
-    /// Of which unknowns.
+    /// Unknowns that are measured.
     pub block: Block,
-    /// Against what.
+    /// Tolerances to compare with.
     pub tolerance: Tolerance,
     /// Whether each variable is measured by itself.
     pub apart: bool,
@@ -78,7 +78,7 @@ impl Measure {
         Ok(Self { form, block, tolerance: Tolerance::read(settings, stem)?, apart: !sums.unwrap_or(false) })
     }
 
-    /// Of all unknowns, with the tolerances of the solver settings.
+    /// Measure of all unknowns, with the tolerances of the solver settings.
     ///
     /// # Errors
     /// Settings of another type.
@@ -100,7 +100,7 @@ impl Measure {
                 let switched = measures.switched.map(norms);
                 let check = |(kind, norm): (usize, &Norm)| {
                     let of_start = starts.iter().map(|start| start[kind].size).fold(0.0, f64::max);
-                    // Equations that nothing acted in at the start refer to what the last change of state left of them.
+                    // Equations without action at the start refer to their residual after the last change of state.
                     let of_switch = switched.as_ref().map_or(0.0, |left| left[kind].size);
                     let reference = [of_start, of_switch, norm.size].into_iter().find(|size| *size > 0.0);
                     self.of_variable(*norm, reference.unwrap_or(0.0), || is_balanced(kind))
@@ -114,7 +114,7 @@ impl Measure {
                     self.of_variable(norm, reference, || is_last_digit(norm.size, total.size))
                 };
                 let mut checks: Vec<Check> = norms(measures.increment).into_iter().zip(&totals).map(check).collect();
-                // What is zero but for round-off moves by as much as it is: it holds up no other variable.
+                // An unknown that is zero but for round-off moves by as much as its value: it does not hold up other variables.
                 if checks.iter().any(|check| check.converged) {
                     for (kind, check) in checks.iter_mut().enumerate() {
                         check.converged = check.converged || is_balanced(kind);

@@ -1,8 +1,8 @@
 //! Whether a run fits in memory, asked before it starts: the one place that decides.
 //!
-//! What is compared: the matrices that will be assembled and the solver's own need ([`LinearSolver::needs`]), with what the
-//! machine has free ([`memory::available`]) or what the deck allows (`"memory_limit"` of `linear_solver_settings`, in GB).
-//! Runs on several processes are not judged: who of them holds what is not known before.
+//! The check compares the matrices that will be assembled and the solver's own need ([`LinearSolver::needs`]) with the memory that the
+//! machine has free ([`memory::available`]) or that the deck allows (`"memory_limit"` of `linear_solver_settings`, in GB). Runs on
+//! several ranks are not judged: the memory of each rank is not known before.
 
 use zelus_linear_algebra::{LinearSolver, memory};
 

@@ -1,8 +1,8 @@
 //! The solution of one step: time scheme, Newton's iteration, convergence criteria.
 //!
-//! A [`Scheme`] says what inertia adds and how rates follow displacements; a [`ConvergenceCriterion`] judges and changes
-//! nothing; [`NewtonRaphson`] iterates, [`ExplicitStrategy`] does without. The active set of contact is a stage of each
-//! iteration, see [`crate::entities::ActiveSet::after_update`].
+//! A [`Scheme`] gives the inertia terms and the rates from displacements; a [`ConvergenceCriterion`] judges and changes nothing;
+//! [`NewtonRaphson`] iterates, [`ExplicitStrategy`] does without. The active set of contact is a stage of each iteration, see
+//! [`crate::entities::ActiveSet::after_update`].
 
 mod account;
 mod arc_length;

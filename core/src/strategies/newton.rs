@@ -56,7 +56,7 @@ pub struct NewtonSettings {
     pub linear: bool,
     /// Whether reactions are computed.
     pub compute_reactions: bool,
-    /// Whether reactions of supports hold what constraints hand on to them.
+    /// Whether reactions of supports include the forces that constraints hand on to them.
     pub reactions_of_constraints: bool,
     /// Whether nodes follow the unknown that moves the mesh.
     pub move_mesh: bool,
@@ -104,7 +104,7 @@ pub struct NewtonRaphson {
 #[serde(remote = "Self")]
 struct NewtonState {
     failed: bool,
-    /// Of redundant constraints, and of multipliers that are not condensed.
+    /// Whether redundant constraints, and multipliers that are not condensed, have been warned of.
     warned: [bool; 2],
     scheme: Option<Box<dyn State>>,
     solver: Option<Box<dyn State>>,
@@ -347,7 +347,7 @@ impl NewtonRaphson {
         let known = solved.as_ref().map_or([0.0; 2], |(_, report)| [report.seconds_symbolic, report.seconds_numeric]);
         self.phases.add("linear: order", known[0]);
         self.phases.add("linear: factor", known[1]);
-        // With what engines spent that gave no answer.
+        // With the time of engines that gave no solution.
         let known = known[0] + known[1] + self.assembler.seconds.bulk - assembling;
         self.phases.add("linear: solve", start.elapsed().as_secs_f64() - known);
         let (increment, report) = solved.map_err(|failed| failed.in_part(part))?;
@@ -367,7 +367,7 @@ impl NewtonRaphson {
         Ok(Solved { increment, relative_residual, iterations, engine: engine.to_owned(), fallback })
     }
 
-    /// What the criterion says of the state after an iteration.
+    /// Verdict of the criterion on the state after an iteration.
     pub(super) fn judge(
         &self,
         part: &ModelPart,
@@ -455,7 +455,7 @@ impl NewtonRaphson {
         Ok(())
     }
 
-    /// Warns, once a run, that constraints of interactions repeat what others ask for.
+    /// Warns, once a run, of redundant constraints of interactions.
     pub(super) fn warn_of_redundancy(&mut self, why: &str) {
         if std::mem::replace(&mut self.warned, true) {
             return;
@@ -487,7 +487,7 @@ impl NewtonRaphson {
         }
     }
 
-    /// The largest entry of what is out of balance and its unknown, in words; collective.
+    /// The largest out-of-balance entry and its unknown, in words; collective.
     pub(super) fn largest_residual(&self, part: &ModelPart, system: &System, balanced: &[f64]) -> Option<String> {
         let size = |n: u32| balanced[n as usize].abs();
         let unknowns = self.assembler.equations().unknowns().iter().copied();
@@ -519,15 +519,16 @@ impl NewtonRaphson {
             format!("; the contact state of nodes {} still changes: {}", nodes.join(" "), described.join("; "))
         });
         format!(
-            "not converged in {} iterations{}{}",
+            "not converged in {} iteration{}{}{}",
             records.len(),
+            if records.len() == 1 { "" } else { "s" },
             worst.unwrap_or_default(),
             cycling.unwrap_or_default()
         )
     }
 }
 
-/// Where a node is and what interactions say of its state, where one does.
+/// Position of a node and its state in an interaction, where it has one.
 fn state_of(part: &ModelPart, system: &System, id: usize) -> Option<String> {
     let node = part.nodes.ids.binary_search(&id).ok()? as u32;
     let state = system.interactions.iter().find_map(|interaction| interaction.node_state(node))?;

@@ -8,7 +8,7 @@ use zelus_linear_algebra::{Condensation, CondensationSettings, Csr, Layout, NotC
 use crate::assembly::Numbering;
 use crate::communication::Ranks;
 
-/// Largest share of a multiplier on other slave nodes: nothing corrects here for what the condensation leaves out.
+/// Largest share of a multiplier on other slave nodes: nothing corrects here for terms that the condensation leaves out.
 const OFF_NODE: f64 = 1e-14;
 
 /// Place of the node of an equation in the whole mesh, and whether it is a multiplier, by the equation's number.
@@ -19,7 +19,7 @@ pub(super) struct OwnedCondensation {
     condensation: Condensation,
     /// Numbers of the equations that the condensation sees, ascending.
     seen: Vec<u32>,
-    /// Which equation of this rank each of them is, where it is one.
+    /// Equation of this rank for each of them, where it has one.
     here: Vec<Option<u32>>,
     /// Numbers of all multipliers, ascending.
     multipliers: Vec<u32>,

@@ -18,7 +18,7 @@ use crate::model::Nodes;
 /// The rows of this rank and the solver over all of them.
 pub(super) struct OwnedRows {
     solver: DistributedSolver,
-    /// Stamps of what the pattern and the values were made of.
+    /// Stamps of the sources of the pattern and the values.
     made_of: Option<[u64; 4]>,
     graph: u64,
     stamp: u64,
@@ -34,15 +34,15 @@ pub(super) struct OwnedRows {
     condensing: Option<CondensationSettings>,
     /// The node of each equation in the rows of this rank, and whether it is a multiplier; only where these are condensed.
     held: Held,
-    /// What is condensed now, with the stamp of the rows it was made of, or why it is not.
+    /// Condensed system, with the stamp of the rows it was made of, or the reason why it is not condensed.
     condensed: Option<(Result<OwnedCondensation, NotCondensable>, u64)>,
-    /// What the equations stand for that are to blame for something.
+    /// Meaning of the equations that are to blame for something.
     meanings: BTreeMap<usize, Meaning>,
     /// PETSc runs as long as they do, and the solver needs it to the end.
     _ranks: Ranks,
 }
 
-/// The equations of this rank and what they stand for.
+/// The equations of this rank and their meaning.
 #[derive(Clone, Copy)]
 struct Here<'a> {
     assembler: &'a Assembler,
@@ -79,7 +79,7 @@ impl<'a> Here<'a> {
         wanted.iter().zip(packed.chunks_exact(4)).filter_map(meaning).collect()
     }
 
-    /// Positions and directions of equations, for rigid motions; collective.
+    /// Positions and directions of equations, for rigid-body modes; collective.
     fn modes(&self, equations: &[u32]) -> RigidModes {
         let of = |e: &u32| &self.dofs.dofs()[self.unknowns[*e as usize] as usize];
         let component = |e: &u32| of(e).variable.component.filter(|_| of(e).moves_mesh()).unwrap_or(u8::MAX);
@@ -122,8 +122,8 @@ impl OwnedRows {
     /// has; collective.
     ///
     /// # Errors
-    /// Those of [`DistributedSolver::solve`], with equations that [`OwnedRows::meaning`] knows; [`crate::Error::System`] when
-    /// PETSc cannot start.
+    /// Errors of [`DistributedSolver::solve`], with equations that [`OwnedRows::meaning`] knows; [`crate::Error::System`] when PETSc
+    /// cannot start.
     pub(super) fn solve(
         &mut self,
         assembler: &Assembler,
@@ -155,7 +155,7 @@ impl OwnedRows {
             symmetry: if has_coupling { Symmetry::General } else { system.bulk_symmetry },
             has_multipliers: left.is_none() && system.layout.multiplier.contains(&true),
             modes: Some(modes.as_ref().unwrap_or(&self.modes)),
-            // The pattern of a condensed system changes with what is active.
+            // The pattern of a condensed system changes with the active set.
             graph: if left.is_some() { u64::MAX - self.stamp } else { self.graph },
             stamp: self.stamp,
         };
@@ -185,7 +185,7 @@ impl OwnedRows {
         self.condensed.as_ref().and_then(|(condensed, _)| condensed.as_ref().err().copied())
     }
 
-    /// What an equation stands for that an error or [`OwnedRows::not_condensed`] names.
+    /// Meaning of an equation that an error or [`OwnedRows::not_condensed`] names.
     pub(super) fn meaning(&self, equation: usize) -> Option<Meaning> {
         self.meanings.get(&equation).copied()
     }

@@ -15,7 +15,7 @@ impl Phases {
         *self.seconds.entry(phase).or_default() += seconds;
     }
 
-    /// Adds what has gone since `start`.
+    /// Adds the time since `start`.
     pub fn since(&mut self, phase: &'static str, start: Instant) {
         self.add(phase, start.elapsed().as_secs_f64());
     }

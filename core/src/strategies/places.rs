@@ -57,7 +57,7 @@ impl Places {
         self.here.numbering.numbers.len() + self.beyond.len()
     }
 
-    /// Which of its own equations a number is that of.
+    /// Own equation of a number, where it has one.
     pub(super) fn own(&self, number: u32) -> Option<u32> {
         let at = number.checked_sub(self.here.first)?;
         self.here.numbering.own.get(at as usize).copied()

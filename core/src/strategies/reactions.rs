@@ -5,8 +5,8 @@ use crate::model::{ColumnOf, ModelPart, Rates};
 
 /// The reactions of all unknowns that have one: minus the out-of-balance force, which supports and constraints carry.
 ///
-/// With the equations, supports also bear what constraints hand on to them, so that their forces balance the loads. Free nodes
-/// have the force of their constraints.
+/// With the equations, reactions also include the forces that constraints hand on to supports, so that they balance the loads. Free
+/// nodes have the force of their constraints.
 pub fn write_reactions(part: &mut ModelPart, dofs: &DofTable, residual: &[f64], handed_on: Option<&Equations>) {
     let supported = handed_on.map(|equations| equations.supported(residual));
     let residual = supported.as_deref().unwrap_or(residual);

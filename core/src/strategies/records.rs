@@ -1,4 +1,4 @@
-//! What a step leaves behind for the log and the report of the run.
+//! Records of a step for the log and the report of the run.
 
 use super::balance::Balance;
 use super::criterion::Check;
@@ -20,7 +20,7 @@ const NAMED_NODES: usize = 12;
 pub struct IterationRecord {
     /// From 1.
     pub iteration: usize,
-    /// What the criteria measured.
+    /// Measurements of the criteria.
     pub checks: Vec<Check>,
     /// Nodes that became active or inactive.
     pub active_set_changes: usize,
@@ -42,7 +42,7 @@ pub struct IterationRecord {
 left_out_of_json!(IterationRecord, "condition_number");
 
 impl IterationRecord {
-    /// What the criteria measured after an iteration with this solve, in which the interactions changed so.
+    /// Record of an iteration with this solve: the measurements of the criteria, and the changes of the interactions.
     pub(super) fn new(iteration: usize, checks: Vec<Check>, change: &SetChange, solved: &Solved) -> Self {
         let changed = change.activated.iter().chain(&change.deactivated).chain(&change.stick_slip);
         Self {
@@ -83,7 +83,7 @@ pub struct StepRecord {
     pub coarse: Option<String>,
     /// Numbers of interactions and processes by name, e.g. active nodes.
     pub interactions: Vec<(String, f64)>,
-    /// What acts, holds and is left over, where it converged by iteration.
+    /// Balance of loads, reactions and remainder, where the step converged by iteration.
     #[serde(default)]
     pub balance: Option<Balance>,
 }
@@ -118,7 +118,7 @@ impl StepRecord {
     }
 }
 
-/// What a stage is going to do.
+/// Plan of a stage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Plan {
     /// Its number, from 1.
@@ -137,7 +137,7 @@ pub struct Plan {
 pub trait Monitor: Send {
     /// A stage is ready to run.
     fn begin_stage(&mut self, _plan: &Plan) {}
-    /// What is done from now on, e.g. `assemble`.
+    /// Phase that begins, e.g. `assemble`.
     fn phase(&mut self, _phase: &'static str) {}
     /// A step begins.
     fn begin_step(&mut self, _step: usize, _time: f64, _delta_time: f64) {}

@@ -1,4 +1,4 @@
-//! Time schemes: what inertia adds to the system, and how rates follow displacements.
+//! Time schemes: the inertia terms of the system, and the rates from displacements.
 
 use zelus_linear_algebra::State;
 
@@ -51,12 +51,12 @@ pub trait Scheme: Send {
     /// Derivatives from the present unknowns.
     fn update(&self, _part: &mut ModelPart) {}
 
-    /// What inertia and damping add in the present state; `None` when the problem is static.
+    /// Contribution of inertia and damping in the present state; `None` when the problem is static.
     fn inertia(&self, _part: &ModelPart, _dofs: &DofTable) -> Option<Inertia> {
         None
     }
 
-    /// Step start: what inertia and damping were at the end of the last step, when the scheme has still to be told.
+    /// Step start: inertia and damping at the end of the last step, when the scheme has still to be told.
     ///
     /// [`Scheme::keep`] is then called with the forces that come of it.
     fn past_inertia(&self, _part: &ModelPart, _dofs: &DofTable) -> Option<Inertia> {
@@ -71,7 +71,7 @@ pub trait Scheme: Send {
     /// The forces that inertia and damping took up at the end of an accepted step, a number an unknown.
     fn keep(&mut self, _forces: Vec<f64>) {}
 
-    /// What it remembers between steps beside the fields of the model, for the file of a saved run.
+    /// State between steps beside the fields of the model, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
@@ -84,7 +84,7 @@ pub trait Scheme: Send {
         Ok(())
     }
 
-    /// Step start: what it keeps of forces, for changes.
+    /// Step start: the forces that it keeps, for changes.
     fn kept(&mut self) -> Option<&mut Vec<f64>> {
         None
     }
@@ -97,7 +97,7 @@ pub(super) fn predict_ballistic(part: &mut ModelPart, dofs: &DofTable) {
     predict(part, dofs, |n| u[n] + dt * v[n] + 0.5 * dt * dt * a[n]);
 }
 
-/// Moves free unknowns with rates to what is guessed of each.
+/// Moves free unknowns with rates to their predicted values.
 pub(super) fn predict(part: &mut ModelPart, dofs: &DofTable, guess: impl Fn(usize) -> f64) {
     let mut values = dofs.column(part, UNKNOWN, 0);
     for (number, dof) in dofs.dofs().iter().enumerate() {
@@ -125,7 +125,7 @@ pub(super) fn update_newmark(part: &mut ModelPart, beta: f64, gamma: f64) {
     }
 }
 
-/// No inertia: time only orders the loads.
+/// No inertia: time is the load factor.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct StaticScheme;
 
@@ -135,7 +135,7 @@ impl Scheme for StaticScheme {
     }
 }
 
-/// What a scheme is made from.
+/// Arguments from which a scheme is made.
 pub struct SchemeRequest<'a> {
     /// The solver settings, defaults filled in.
     pub settings: &'a Settings,
@@ -168,6 +168,6 @@ registered_kind! {
 }
 
 register! { SchemeEntry "static",
-    about: "no inertia: time only orders the loads",
+    about: "no inertia: time is the load factor",
     build: SchemeFactory::Implicit(|_| Ok(Box::new(StaticScheme))),
 }

@@ -1,8 +1,8 @@
 //! The system of all ranks for a solver that works where the rows are: each rank has its own rows complete, and those of
 //! nodes with multipliers beside them.
 //!
-//! The bulk stays where it is: what other ranks give to own rows joins the coupling, as do the rows of ghosts with multipliers,
-//! of which two rings around own rows are what multigrid needs to eliminate these from own rows.
+//! The bulk stays where it is: contributions of other ranks to own rows join the coupling, as do the rows of ghosts with multipliers.
+//! Multigrid needs two rings of them around own rows to eliminate these multipliers from own rows.
 
 use std::sync::Arc;
 
@@ -23,10 +23,10 @@ type Row = (u32, Vec<u32>, Vec<f64>);
 /// A value with its row and column.
 type Entry = (u32, u32, f64);
 
-/// What a rank has of the system of all ranks.
+/// Share of a rank in the system of all ranks.
 pub(super) struct Share<'a> {
     pub(super) ranks: &'a Ranks,
-    /// Of its equations, those that are held without a number.
+    /// Numbering of its equations; inactive ones have no number.
     pub(super) numbering: &'a Numbering,
     pub(super) system: System<'a>,
     /// Tangents of follower loads.
@@ -35,16 +35,16 @@ pub(super) struct Share<'a> {
     pub(super) unknowns: Option<&'a [u32]>,
 }
 
-/// What the system of all ranks has here beside the bulk of this one.
+/// Entries of the system of all ranks that this rank has beside its bulk.
 #[derive(Default)]
 pub(super) struct SharedRows {
-    /// Stamps of what it was made of.
+    /// Stamps of its sources.
     made_of: Option<[u64; 4]>,
     /// The equations of own rows of the bulk.
     of_bulk: Places,
     /// The motions of bodies, at own equations.
     motions: Vec<Vec<f64>>,
-    /// Own rows of the coupling with what others give to own rows, and all of those that were fetched.
+    /// Own rows of the coupling with the contributions of others to own rows, and all rows that were fetched.
     coupling: Csr,
     /// Whether anything but elements and conditions gives to it.
     is_coupled: bool,
@@ -54,7 +54,7 @@ pub(super) struct SharedRows {
 }
 
 impl SharedRows {
-    /// Brings the rows up to date with what the ranks have, as far as stamps have changed; collective.
+    /// Brings the rows up to date with the data of the ranks, as far as stamps have changed; collective.
     pub(super) fn update(&mut self, share: &Share<'_>, dofs: &DofTable, nodes: &Nodes) {
         let Share { ranks, numbering, system, loads, .. } = *share;
         let has_loads = ranks.any(loads.is_some());
@@ -77,7 +77,7 @@ impl SharedRows {
         }
     }
 
-    /// Makes what this rank has beside its bulk; collective.
+    /// Makes the entries of this rank beside its bulk; collective.
     fn couple(&mut self, ranks: &Ranks, numbering: &Numbering, system: &System<'_>, loads: Option<&Csr>) {
         let mut places = self.of_bulk.clone();
         let beside: Vec<&Csr> = system.coupling.into_iter().chain(loads).collect();
@@ -156,7 +156,7 @@ fn numbered_row<'a>(
     (row, columns, values)
 }
 
-/// What this rank has of the rows of each other one.
+/// Entries of this rank in the rows of each other rank.
 fn rows_of_others(ranks: &Ranks, numbering: &Numbering, places: &Places, matrices: &[&Csr]) -> Vec<Vec<Row>> {
     let mut rows = vec![Vec::new(); ranks.size()];
     for (e, number) in numbering.numbered().filter(|(_, number)| places.own(*number).is_none()) {
@@ -224,7 +224,7 @@ fn placed<'a>(places: &'a Places, (number, columns, values): &'a Row) -> impl It
     columns.iter().zip(values).map(move |(&column, &value)| (row, places.at(column), value))
 }
 
-/// What a complete row has beside what the bulk of this rank has of it.
+/// Entries of a complete row that the bulk of this rank lacks.
 fn complement(bulk: &Csr, mut row: Vec<Entry>) -> Vec<Entry> {
     let Some(&(at, ..)) = row.first() else { return row };
     row.sort_by_key(|entry| entry.1);

@@ -1,4 +1,4 @@
-//! What the stage asks of the solution of a step, whether it iterates or not.
+//! Interface between the stage and the solution of a step, whether it iterates or not.
 
 use zelus_linear_algebra::State;
 
@@ -25,13 +25,13 @@ pub trait SolutionStrategy: Send {
         true
     }
 
-    /// An attempt at a step has failed: takes up another way to iterate until a step is accepted, and says which; `None` where none would
-    /// mend what failed, or where the other way is what has failed and is given up.
+    /// An attempt at a step has failed: takes up another way to iterate until a step is accepted, and names it; `None` where none would
+    /// help, or where the other way itself has failed and is given up.
     fn other_way(&mut self, _failed: &StepRecord) -> Option<&'static str> {
         None
     }
 
-    /// What to try when steps fail.
+    /// Remedy when steps fail.
     fn remedy(&self) -> &'static str {
         "a shorter \"time_step\", more \"max_iteration\", the strategy \"line_search\", at a limit load \"arc_length\""
     }
@@ -64,7 +64,7 @@ pub trait SolutionStrategy: Send {
         Vec::new()
     }
 
-    /// Warnings of what has not happened in any step to interactions of its own, asked for once after the last.
+    /// Warnings of events that never happened in any step to interactions of its own, asked for once after the last.
     fn last_messages(&self, _part: &ModelPart) -> Vec<Diagnostic> {
         Vec::new()
     }
@@ -72,7 +72,7 @@ pub trait SolutionStrategy: Send {
     /// The system of the last step.
     fn assembler(&self) -> &Assembler;
 
-    /// What it remembers between steps, for the file of a saved run; one that is made of another passes on that of the other.
+    /// State between steps, for the file of a saved run; a strategy that wraps another passes on the other's.
     fn state(&self) -> Option<Box<dyn State>>;
 
     /// Takes up a saved state; `part` and `system` have theirs already.
@@ -99,8 +99,8 @@ pub trait SolutionStrategy: Send {
 
 /// A balance with its tangent.
 pub trait Linearized {
-    /// What is out of balance in the present state, a number an unknown of `system`; blocks of interactions may be others than those of
-    /// the tangent. Collective.
+    /// Out-of-balance residual in the present state, a number an unknown of `system`; blocks of interactions may be others than those
+    /// of the tangent. Collective.
     ///
     /// # Errors
     /// An entity that cannot be computed.
@@ -131,12 +131,12 @@ pub(super) fn after_prediction(part: &mut ModelPart, interactions: &mut [Box<dyn
     interactions.iter_mut().filter_map(|i| i.active_set()).try_for_each(|set| set.after_prediction(part))
 }
 
-/// What may be added to the diagonal of interactions whose constraints are redundant.
+/// Term for the diagonal of interactions whose constraints are redundant.
 pub(super) fn relaxation(interactions: &[Box<dyn Interaction>]) -> Option<f64> {
     interactions.iter().filter_map(|interaction| interaction.coupling()).find_map(|coupling| coupling.relaxation())
 }
 
-/// Lets interactions follow an update of the unknowns; what changed in all of them.
+/// Lets interactions follow an update of the unknowns; returns the changes in all of them.
 ///
 /// # Errors
 /// A pair that cannot be computed.
@@ -159,7 +159,7 @@ pub(super) fn is_of_entities(error: &Error) -> bool {
     matches!(error, Error::Input(problems) if problems.iter().all(|problem| problem.code == "entity"))
 }
 
-/// Runs `solve` and puts down what came of it: iterations and the reason of a failure.
+/// Runs `solve` and records the outcome: iterations and the reason of a failure.
 ///
 /// # Errors
 /// As `solve`, but an entity that cannot be computed becomes the reason of a failure.

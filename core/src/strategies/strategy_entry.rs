@@ -59,7 +59,7 @@ impl StrategyRequest<'_> {
         let size = Size { unknowns: self.system.dofs.len(), entries: assembler.entries(), reduced };
         let (solver, warning) = memory::fitting(&self.part.ranks, self.solver, self.frugal, size, &named)?;
         if let Some(warning) = warning {
-            *self.says = format!("linear solver: {} serves, which fits in memory", solver.name());
+            *self.says = format!("linear solver: {}, chosen because it fits in memory", solver.name());
             self.report.push(warning);
         }
         let mut newton = NewtonRaphson::new(self.iteration, self.scheme, self.criterion, solver, assembler);

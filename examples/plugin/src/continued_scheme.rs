@@ -9,7 +9,7 @@ use zelus_core::{Carrier, Result, State, register};
 
 #[derive(Clone, Serialize, Deserialize)]
 struct Continued {
-    /// What the unknowns were when the last step began.
+    /// Unknowns at the start of the last step.
     before: Vec<f64>,
 }
 

@@ -12,7 +12,7 @@ fn program() -> Command {
     command
 }
 
-/// What a deck writes, in a scratch folder, and what the program says.
+/// Runs a deck in a scratch folder; returns the folder, the results and the output of the program.
 fn run(deck: &str) -> (tempfile::TempDir, serde_json::Value, String) {
     let scratch = tempfile::tempdir().expect("a scratch folder");
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("deck");

@@ -114,7 +114,7 @@ fn the_steady_profile_is_a_line() {
         let expected = 1.0 - column as f64 / CELLS as f64;
         assert!((last(&results, "CONCENTRATION", column) - expected).abs() < 1e-13);
     }
-    // What goes in at one end comes out at the other: D over half the height at each of two nodes.
+    // The flux in at one end is the flux out at the other: D over half the height at each of two nodes.
     let through = 0.5 * DIFFUSIVITY / CELLS as f64;
     assert!((last(&results, "CONCENTRATION_SUPPLY", 0) - through).abs() < 1e-13);
     assert!((last(&results, "CONCENTRATION_SUPPLY", CELLS) + through).abs() < 1e-13);

@@ -88,7 +88,7 @@ fn the_unit_of_one_unknown_changes_no_count_of_iterations() {
     }
 }
 
-/// What the default avoids, and Kratos does: the larger numbers decide alone.
+/// Kratos' sum over both unknowns, which the default avoids: the larger numbers decide alone.
 #[test]
 fn a_sum_over_both_depends_on_the_unit() {
     let [small, large] = [1e-9, 1e9].map(|unit| iterations(unit, "residual_criterion", true));

@@ -5,7 +5,7 @@
 //! rows `K_S u + G λ_j = b_S` of node j (`node.rs`) and `L = R⁻¹ Q₁ᵀ`
 //!
 //! - `λ_j = L (b_S − K_S u)`, the recovery;
-//! - `W K_S u = W b_S` in place of the node's own equations: what it says across its multipliers, and its conditions;
+//! - `W K_S u = W b_S` in place of the node's own equations: the part of its equations without its multipliers, and its conditions;
 //! - `(K_i − Σ_j B_ij L_j K_Sj) u = b_i − Σ_j B_ij L_j b_Sj` for the rows i of masters, which see multipliers by `B_ij`.
 //!
 //! Multipliers that do not act on their own node, as those of inactive ones, follow from their conditions alone: that node
@@ -240,7 +240,7 @@ impl Group {
         factors.iter().zip(&self.equations).map(|(factor, &e)| factor * rhs[e as usize]).sum()
     }
 
-    /// Writes `L b_S` less what `of` gives for each multiplier.
+    /// Writes `L b_S` less `of` each multiplier.
     fn recover(&self, rhs: &[f64], of: impl Fn(usize) -> f64, x: &mut [f64]) {
         let s = self.equations.len();
         for (m, &multiplier) in self.equations[self.own..].iter().enumerate() {

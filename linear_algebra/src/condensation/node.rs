@@ -1,16 +1,16 @@
 //! The elimination of the multipliers of one node from its own equations.
 //!
-//! Of the `s = d + m` equations of a node, `G` (s × m) holds what they know of its multipliers, `H` (s × d) of its other
-//! unknowns. With `G = [Q₁ Q₂] [R; 0]` the multipliers are `R⁻¹ Q₁ᵀ` times the equations, and `Q₂ᵀ` times the equations
-//! knows nothing of them: d equations that replace the node's own. They are scaled to `α I` on the node's own unknowns,
-//! `W = α (Q₂ᵀ H)⁻¹ Q₂ᵀ`, so that conditions and forces weigh alike whatever their units.
+//! For the `s = d + m` equations of a node, `G` (s × m) holds the coefficients of its multipliers, `H` (s × d) those of its other
+//! unknowns. With `G = [Q₁ Q₂] [R; 0]` the multipliers are `R⁻¹ Q₁ᵀ` times the equations, and `Q₂ᵀ` times the equations knows nothing
+//! of them: d equations that replace the node's own. They are scaled to `α I` on the node's own unknowns, `W = α (Q₂ᵀ H)⁻¹ Q₂ᵀ`, so
+//! that conditions and forces weigh alike whatever their units.
 
 use crate::dense_lu;
 
 /// Pivots of the scaled `Q₂ᵀ H` below which the equations are left as they are, but for their size.
 const REGULAR: f64 = 1e-6;
 
-/// What replaces the equations of a node.
+/// Elimination of the equations of a node, and the recovery of its unknowns.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NodeElimination {
     /// `R⁻¹ Q₁ᵀ` by rows, m × s: multipliers out of the equations.

@@ -1,4 +1,4 @@
-//! Answers made better by iteration, and what they tell of a matrix: whether it is singular, and where.
+//! Solutions improved by iteration, and their diagnosis of a matrix: whether it is singular, and where.
 
 use super::WANTED;
 use super::path::Path;

@@ -81,7 +81,7 @@ pub(crate) struct DirectSolver {
     seconds_numeric: f64,
 }
 
-/// What the engine has learnt.
+/// State that the engine keeps between solves.
 #[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(remote = "Self")]
 struct DirectState {
@@ -163,7 +163,7 @@ impl DirectSolver {
         needed
     }
 
-    /// Makes `way` ready for `system`, reusing what the stamps allow; `None` when the matrix does not suit the way.
+    /// Makes `way` ready for `system`, with the reuse that the stamps allow; `None` when the matrix does not suit the way.
     fn prepare(&mut self, way: Way, system: &System<'_>) -> Result<Option<Path>, SolveError> {
         let stamps = Stamps::of(system);
         let (old, old_stamps) = match self.current.take() {
@@ -417,7 +417,7 @@ impl LinearSolver for DirectSolver {
                 engine: way.name(),
                 relative_residual: refined.relative_residual,
                 iterations: refined.steps,
-                fallback: (!failed.is_empty()).then(|| format!("{} did not serve", failed.join(", "))),
+                fallback: (!failed.is_empty()).then(|| format!("{} failed", failed.join(", "))),
                 seconds_symbolic: self.seconds_symbolic,
                 seconds_numeric: self.seconds_numeric,
                 seconds_solve: start.elapsed().as_secs_f64() - before_solve,

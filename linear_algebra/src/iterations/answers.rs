@@ -1,8 +1,8 @@
 //! Answers of earlier solves as the start of the next one.
 //!
-//! Loads that grow over steps and a tangent that changes little make answers that are nearly combinations of those before.
-//! The start is the combination `x = Σ y_i x_i` that leaves the least `‖b - A x‖` (Fischer, Comput. Methods Appl. Mech.
-//! Engrg. 163 (1998)), with the matrix of the present solve: what has changed costs digits of the start, never of the answer.
+//! Loads that grow over steps and a tangent that changes little make answers that are nearly combinations of those before. The start is
+//! the combination `x = Σ y_i x_i` that leaves the least `‖b - A x‖` (Fischer, Comput. Methods Appl. Mech. Engrg. 163 (1998)), with the
+//! matrix of the present solve: a changed matrix costs digits of the start, never of the solution.
 
 use std::collections::VecDeque;
 
@@ -20,7 +20,7 @@ const INDEPENDENT: f64 = 1e-7;
 #[derive(Clone, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Answer {
-    /// Of a length between one and two: the power of two by which it was divided changes no digit of it or of its product.
+    /// Solution scaled to a length between one and two: division by a power of two changes no digit of it or of its product.
     pub x: Vec<f64>,
     /// Its product with the bulk of a system, with the stamp of the values of that bulk.
     #[serde(skip)]
@@ -43,7 +43,7 @@ impl Answer {
 /// The latest answers of a solver.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Answers {
-    /// What they are answers of.
+    /// Graph of the matrix that they are solutions of.
     graph: u64,
     latest: VecDeque<Answer>,
 }
@@ -71,8 +71,8 @@ impl Answers {
         }
     }
 
-    /// Sets `x` to the combination of answers that leaves the least of `b`, or no more than `enough` times its norm, and gives what
-    /// it leaves; `multiply(answer, y)` is `y = A x`.
+    /// Sets `x` to the combination of previous solutions with the least residual of `b`, or one of no more than `enough` times its
+    /// norm, and returns the residual's norm; `multiply(answer, y)` is `y = A x`.
     pub(crate) fn start(
         &mut self,
         graph: u64,
@@ -85,7 +85,7 @@ impl Answers {
         if self.graph != graph || self.latest.iter().any(|kept| kept.x.len() != x.len()) {
             return copied(b);
         }
-        // Orthonormal products; their answers, with what each had of those before it and the part of b along it.
+        // Orthonormal products; their solutions, with the coefficients of those before and the part of b along it.
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let mut found: Vec<(&[f64], Vec<f64>, f64)> = Vec::new();
         let mut rest = copied(b);
@@ -142,7 +142,7 @@ mod tests {
         assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-12), "{x:?}");
         let rest = [0.0, 0.0, 0.0, 0.8];
         assert!(left.iter().zip(rest).all(|(left, rest)| (left - rest).abs() < 1e-12), "{left:?}");
-        // What is known is not made again, unless the matrix is another.
+        // A known product is not computed again, unless the matrix is another.
         let known = |answer: &mut Answer, y: &mut [f64]| {
             y.copy_from_slice(answer.product(1, |_, _| unreachable!("the product is known")));
         };

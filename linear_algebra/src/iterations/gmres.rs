@@ -22,7 +22,7 @@ fn at<T: Number>(list: &mut Vec<Vec<T>>, place: usize, n: usize) -> &mut Vec<T> 
     &mut list[place]
 }
 
-/// What a cycle of iterations found: how much of which direction to add.
+/// Result of a cycle of iterations: the coefficient of each direction.
 struct Cycle {
     coefficients: Vec<f64>,
     iterations: usize,
@@ -92,7 +92,7 @@ impl<T: Number> Gmres<T> {
 
     /// Replaces `b` by an approximation of `A⁻¹ b` that leaves no more than the share `aim` of it; gives the iterations, at most `most`.
     ///
-    /// What it leaves is not computed but known from the iteration to be half as much, which is good enough for a preconditioner.
+    /// The residual is not computed: the iteration tells it within a factor of two, which is good enough for a preconditioner.
     pub(crate) fn approximate(
         &mut self,
         ghosts: &Ghosts,
@@ -114,7 +114,7 @@ impl<T: Number> Gmres<T> {
         cycle.iterations
     }
 
-    /// What the `x` of the last solve left of its `b`.
+    /// Residual b − A x of the last solve.
     pub(crate) fn residual(&self) -> &[T] {
         &self.basis[0]
     }

@@ -13,7 +13,7 @@ use crate::symbolic::{Front, Symbolic};
 /// Operations of a subtree below which one task does all of it.
 const TASK_WORK: f64 = 2e7;
 
-/// What every front needs to know.
+/// Data that every front needs.
 pub(super) struct Elimination<'a> {
     pub(super) symbolic: &'a Symbolic,
     pub(super) scatter: &'a Scatter,

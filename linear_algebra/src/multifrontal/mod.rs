@@ -19,7 +19,7 @@ pub(crate) use scatter::Scatter;
 pub(crate) use store::Precision;
 use store::Store;
 
-/// Which factorisation.
+/// Kind of factorisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Kind {
     /// `L Lᵀ` of a symmetric positive definite matrix.

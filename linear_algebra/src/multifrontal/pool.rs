@@ -4,7 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// Shorter buffers are left to the allocator.
 const SMALL: usize = 1 << 13;
-/// Share of what is asked for by which a buffer may be longer.
+/// Share of the requested length by which a buffer may be longer.
 const LOOSE: f64 = 0.25;
 /// Numbers that may wait in buffers of half as many and more, which the allocator gives back to the system.
 const WAITING: usize = 1 << 23;
@@ -18,8 +18,8 @@ pub(crate) struct Pool {
 impl Pool {
     /// A buffer of at least `len` numbers of any value.
     ///
-    /// Where none that waits serves, as many numbers as are asked for go back to the system before, so that what waits
-    /// never adds to the most that was in use.
+    /// Where no waiting buffer is suitable, as many numbers as are asked for go back to the system before, so that waiting buffers
+    /// never add to the peak.
     pub(crate) fn take(&self, len: usize) -> Vec<f64> {
         if len >= SMALL {
             let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);

@@ -65,7 +65,7 @@ impl Factor {
         }
     }
 
-    /// Forward substitution in a subtree; gives what its rows lose.
+    /// Forward substitution in a subtree; returns the updates of the rows above.
     fn forward(&self, y: &mut [f64], top: usize) -> Vec<f64> {
         let fronts = &self.symbolic.fronts;
         let front = &fronts[top];

@@ -47,7 +47,8 @@ impl Strong {
             let (mut ends, mut lists) = (Vec::with_capacity(ROWS), Vec::new());
             for i in task * ROWS..((task + 1) * ROWS).min(matrix.rows) {
                 let (columns, values) = matrix.row(i);
-                // Aggregates end where the blocks of others begin, and where another body does: what touches moves apart and slides.
+                // Aggregates end where the blocks of others begin, and at the boundary of a body: bodies in contact move apart and
+                // slide.
                 let is_neighbour =
                     |j: u32| j as usize != i && (j as usize) < matrix.rows && bodies[j as usize] == bodies[i];
                 let blocks = columns.iter().zip(values.chunks_exact(size)).filter(|(j, _)| is_neighbour(**j));

@@ -1,4 +1,4 @@
-//! Sparse matrices of small dense blocks, in single precision: what the levels of multigrid are made of.
+//! Sparse matrices of small dense blocks, in single precision: the matrices of the levels of multigrid.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -149,7 +149,7 @@ pub(super) const NOTHING_EARLIER: Option<(&BlockMatrix, fn(usize) -> bool)> = No
 /// The work on the product of a part: its first row, the product, and the numbers at its rows.
 type WithProduct<'a> = &'a (dyn Fn(usize, &[f32], &mut [f32]) + Sync);
 
-/// What a product does to what stands where it is written.
+/// Operation of a product on the vector that it writes to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Into {
     /// It is replaced.
@@ -164,7 +164,7 @@ impl BlockMatrix {
         Self::from_rows_with(shape, block, NOTHING_EARLIER, || (), |i, row, ()| fill(i, row))
     }
 
-    /// The same with what `fill` works in, made once for many rows; rows that are those of an earlier matrix are taken from it.
+    /// The same with the work space of `fill`, made once for many rows; rows that are those of an earlier matrix are taken from it.
     pub(super) fn from_rows_with<T: Send>(
         [rows, columns]: [usize; 2],
         [height, width]: [usize; 2],
@@ -351,7 +351,7 @@ impl BlockMatrix {
 
     /// `self (middle right)`.
     ///
-    /// The inner product is bigger than what comes of it, so no more of it is held than the rows under way need.
+    /// The inner product is larger than the result, so only the rows under way are held.
     pub(super) fn times_product(&self, middle: &Self, right: &Self) -> Self {
         let nothing = Arc::new(Part::with_room(0, 0, 0));
         let parts = vec![nothing.clone(); middle.rows.div_ceil(ROWS)];

@@ -1,7 +1,7 @@
-//! What is left of a system once its multipliers are gone: a matrix of node blocks in single precision, and solves with it.
+//! The reduced system without multipliers: a matrix of node blocks in single precision, and solves with it.
 //!
-//! Vectors are in single precision, too, so an iteration moves a third of the bytes of one with the system itself; what rounding
-//! leaves is corrected by the next solve, for a residual in double precision.
+//! Vectors are in single precision, too, so an iteration moves a third of the bytes of one with the system itself; the next solve
+//! corrects rounding errors, for a residual in double precision.
 
 use std::sync::Arc;
 
@@ -17,9 +17,9 @@ const MOST: usize = 80;
 /// A matrix of blocks, own rows.
 pub(crate) struct Blocks {
     pub(super) matrix: Arc<BlockMatrix>,
-    /// What the matrix was divided by.
+    /// Divisor of the matrix.
     pub(crate) size: f64,
-    /// Which rows are those of the bulk.
+    /// Mask of rows that are those of the bulk.
     pub(super) of_bulk: Vec<bool>,
     pub(super) ghosts: Ghosts,
 }

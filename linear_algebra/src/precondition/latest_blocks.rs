@@ -1,10 +1,10 @@
-//! What the constraints leave of one system after the other.
+//! Cache of the reduced system, from one system to the next.
 
 use super::blocks::Blocks;
 use super::constrained::Constrained;
 use crate::system::{Stamps, System};
 
-/// What the constraints left of the last system that needed it.
+/// Cache of the reduced system: that of the last system that needed it.
 #[derive(Default)]
 pub(crate) struct LatestBlocks {
     made: Option<(Blocks, Stamps)>,
@@ -12,7 +12,7 @@ pub(crate) struct LatestBlocks {
 }
 
 impl LatestBlocks {
-    /// Whether a system has the bulk of the last, as far as is known: most rows of what is left are then those of before.
+    /// Whether a system has the bulk of the last, as far as is known: most rows of the reduced system are then those of before.
     pub(crate) fn has_bulk_of(&self, system: &System<'_>) -> bool {
         !self.is_forgotten && self.made.as_ref().is_some_and(|(_, old)| has_same_bulk(old, &Stamps::of(system)))
     }
@@ -22,7 +22,7 @@ impl LatestBlocks {
         self.is_forgotten = true;
     }
 
-    /// What the constraints leave of a system, made of that of an earlier one as far as both have the same bulk; collective.
+    /// The reduced system of a system, made from that of an earlier one as far as both have the same bulk; collective.
     pub(crate) fn up_to_date(&mut self, constrained: &Constrained, system: &System<'_>) -> &Blocks {
         let stamps = Stamps::of(system);
         self.is_forgotten = false;

@@ -1,10 +1,10 @@
 //! Smoothed-aggregation multigrid on node blocks: one V-cycle with Chebyshev smoothing in single precision, symmetric for
 //! a symmetric matrix.
 //!
-//! Vaněk, Mandel and Brezina, Computing 56 (1996). The prolongation is `P = (I - ω D⁻¹ A) T` with the tentative `T`
-//! of [`super::aggregation`], `D` the diagonal blocks and `ω = 4 / (3 ρ(D⁻¹ A))`. Where several processes share the matrix,
-//! aggregates stay within the rows of one; products, prolongations and levels are those of one process with these
-//! aggregates, and each process has the coarsest level.
+//! Vaněk, Mandel and Brezina, Computing 56 (1996). The prolongation is `P = (I - ω D⁻¹ A) T` with the tentative `T` of
+//! [`super::aggregation`], `D` the diagonal blocks and `ω = 4 / (3 ρ(D⁻¹ A))`. Where several ranks share the matrix, aggregates stay
+//! within the rows of one; products, prolongations and levels are those of one rank with these aggregates, and each rank has the
+//! coarsest level.
 
 use std::sync::{Arc, Mutex};
 
@@ -33,7 +33,7 @@ const COARSEST: usize = 1500;
 const LEVELS: usize = 12;
 /// Steps of Arnoldi's iteration for the spectral radius.
 const ARNOLDI_STEPS: usize = 5;
-/// What that may have missed.
+/// Safety factor of that estimate, which may be too low.
 const SAFETY: f32 = 1.1;
 /// Squarings of the matrix that Arnoldi's iteration leaves: its radius is then known to a thousandth.
 const SQUARINGS: usize = 11;
@@ -59,7 +59,7 @@ struct Level {
     ghosts: Ghosts,
 }
 
-/// What a level of one process is made of again.
+/// Data from which a level of one rank is restored.
 #[derive(Deserialize)]
 struct SavedLevel {
     matrix: Arc<BlockMatrix>,
@@ -83,12 +83,12 @@ struct Vectors {
     step: Vec<f32>,
 }
 
-/// The last level, which every process has whole.
+/// The last level, which every rank has whole.
 struct Coarsest {
     /// `None` when it has no equations.
     factor: Option<Factor>,
     ghosts: Ghosts,
-    /// Equations of each process.
+    /// Equations of each rank.
     counts: Vec<usize>,
 }
 
@@ -105,7 +105,7 @@ pub(crate) struct Multigrid {
     vectors: Mutex<Vec<Vectors>>,
 }
 
-/// What a hierarchy of one process is made of again.
+/// Data from which a hierarchy of one rank is restored.
 #[derive(Deserialize)]
 struct SavedMultigrid {
     levels: Vec<SavedLevel>,
@@ -178,7 +178,7 @@ impl Multigrid {
         Self { levels, last, coarsest, vectors }
     }
 
-    /// Whether several processes share it; it cannot be saved then.
+    /// Whether several ranks share it; it cannot be saved then.
     pub(crate) fn is_shared(&self) -> bool {
         self.coarsest.ghosts.processes().is_some()
     }

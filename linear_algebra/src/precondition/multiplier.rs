@@ -38,7 +38,7 @@ pub(super) fn multiplier(shape: [usize; 3]) -> Multiply {
     }
 }
 
-/// The products for what the processor has.
+/// The products for the instruction set of the processor.
 fn wide<const H: usize, const L: usize, const K: usize, const W: usize>() -> Multiply {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {

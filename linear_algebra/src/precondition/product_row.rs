@@ -17,7 +17,7 @@ impl ProductRow {
         Self { shape, multiply: multiplier(shape), sums: Vec::new(), places: Vec::new() }
     }
 
-    /// Adds the products of a block with blocks that stand side by side to what stands in these columns of the row; see [`Multiply`].
+    /// Adds the products of a block with blocks that stand side by side to the values in these columns of the row; see [`Multiply`].
     #[inline]
     pub(super) fn add(&mut self, row: &mut BlockRow, columns: &[u32], a: &[f32], b: &[f32]) {
         self.places.clear();

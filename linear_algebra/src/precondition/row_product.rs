@@ -1,4 +1,4 @@
-//! The product of a row of blocks with a vector: what the time of multigrid goes into.
+//! The product of a row of blocks with a vector: the kernel that dominates the time of multigrid.
 //!
 //! Entries are added in one order, so that processors with wider vectors give the same bits, sooner.
 

@@ -1,5 +1,5 @@
-//! What processes that share a level of multigrid need of each other: rows of the prolongation, and rows of the coarse
-//! matrix that are made where others own them.
+//! Exchange between ranks that share a level of multigrid: rows of the prolongation, and rows of the coarse matrix that are made where
+//! others own them.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use super::aggregation::{NONE, Tentative};
 use super::block_matrix::BlockMatrix;
 use crate::ghosts::{Ghosts, Owned, Processes};
 
-/// Aggregates as one process counts them: its own, then those of others as it meets them.
+/// Aggregates as one rank counts them: its own, then those of others as it meets them.
 pub(super) struct Aggregates {
     rank: u32,
     own: usize,
@@ -19,7 +19,7 @@ pub(super) struct Aggregates {
 type Rows = Vec<(Vec<u32>, Vec<f32>)>;
 
 impl Aggregates {
-    /// The own ones of a process.
+    /// The own ones of a rank.
     pub(super) fn new(ghosts: &Ghosts, own: usize) -> Self {
         let rank = ghosts.processes().map_or(0, |processes| processes.rank() as u32);
         Self { rank, own, others: Vec::new(), at: BTreeMap::new() }
@@ -42,7 +42,7 @@ impl Aggregates {
         })
     }
 
-    /// Name among all processes of an aggregate by its number here.
+    /// Name among all ranks of an aggregate by its number here.
     fn name(&self, number: u32) -> Owned {
         match (number as usize).checked_sub(self.own) {
             None => (self.rank, number),
@@ -75,7 +75,7 @@ impl Aggregates {
         }
     }
 
-    /// `Pᵀ A P` of all processes, the rows of own aggregates, and who owns its columns; collective.
+    /// `Pᵀ A P` of all ranks, the rows of own aggregates, and who owns its columns; collective.
     pub(super) fn product(
         mut self,
         ghosts: &Ghosts,
@@ -131,7 +131,7 @@ impl Aggregates {
         (next, ghosts)
     }
 
-    /// Sends block rows, with a number each, to each process; gives what each sent here. Collective.
+    /// Sends block rows, with a number each, to each rank; returns those from each. Collective.
     fn exchange(
         &mut self,
         processes: &dyn Processes,
@@ -166,7 +166,7 @@ impl Aggregates {
     }
 }
 
-/// The matrices of all processes as one, on each of them, and how many of its rows are those of each; collective.
+/// The matrices of all ranks as one, on each of them, and how many of its rows are those of each; collective.
 pub(super) fn gathered(ghosts: &Ghosts, matrix: &BlockMatrix) -> (BlockMatrix, Vec<usize>) {
     let Some(processes) = ghosts.processes() else { return (matrix.clone(), vec![matrix.rows]) };
     let counts: Vec<usize> = processes.gather(&[matrix.rows as f64]).iter().map(|&count| count as usize).collect();

@@ -1,4 +1,4 @@
-//! What tasks work in.
+//! Work space of tasks.
 
 use std::sync::Mutex;
 

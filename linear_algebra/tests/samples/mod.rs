@@ -49,7 +49,7 @@ impl Brick {
         i + (self.cells[0] + 1) * (j + (self.cells[1] + 1) * k)
     }
 
-    /// The six rigid motions, with equation `3 node + direction`.
+    /// The six rigid-body modes, with equation `3 node + direction`.
     pub fn rigid_motions(&self) -> Vec<Vec<f64>> {
         let mut motions = vec![vec![0.0; 3 * self.nodes()]; 6];
         for k in 0..=self.cells[2] {
@@ -103,7 +103,7 @@ pub fn fix(triplets: &mut Vec<(usize, usize, f64)>, equations: impl IntoIterator
     triplets.extend(fixed.into_iter().map(|i| (i, i, scale)));
 }
 
-/// A box of `cells` unit cubes in each direction that is held at its bottom, with its rigid motions.
+/// A box of `cells` unit cubes in each direction that is held at its bottom, with its rigid-body modes.
 pub fn clamped_box(cells: usize) -> (Csr, Layout) {
     let brick = Brick { cells: [cells; 3] };
     let mut triplets = Vec::new();

@@ -4,7 +4,7 @@ use zelus_core::geometry::Shape;
 
 use crate::mesh::Plane;
 
-/// Types: how they begin, their dimension, and what a planar one stands for.
+/// Types: how they begin, their dimension, and the assumption of a planar one.
 const TYPES: [(&str, usize, Option<Plane>); 22] = [
     ("C3D", 3, None),
     ("DC3D", 3, None),
@@ -30,7 +30,7 @@ const TYPES: [(&str, usize, Option<Plane>); 22] = [
     ("D1D", 1, None),
 ];
 
-/// Shape of a type of elements, and what it stands for in the plane.
+/// Shape of a type of elements, and its assumption in the plane.
 pub(super) fn of(name: &str) -> Option<(Shape, Option<Plane>)> {
     let name = name.to_ascii_uppercase();
     let (start, dimension, plane) = TYPES.iter().find(|(start, ..)| {
@@ -59,7 +59,7 @@ pub(super) fn is_structural(name: &str) -> bool {
     ["S", "STRI", "M3D", "B"].iter().any(|start| name.strip_prefix(start).is_some_and(digit))
 }
 
-/// What elements of that type have and those that come in have not, with what to do.
+/// Features of elements of that type that the imported ones lack, with the remedy.
 pub(super) fn left_out(name: &str, shape: Shape) -> Option<(&'static str, &'static str)> {
     let name = name.to_ascii_uppercase();
     let letters = &name[name.rfind(|c: char| c.is_ascii_digit()).map_or(0, |last| last + 1)..];

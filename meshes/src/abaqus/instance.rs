@@ -14,7 +14,7 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    /// That of the data of `*INSTANCE`.
+    /// Placement in the data of `*INSTANCE`.
     pub(super) fn of(card: &Card) -> Result<Self> {
         let mut out = Self::default();
         let numbers = |line: &Vec<String>| line.iter().map(|field| card.number(field)).collect::<Result<Vec<f64>>>();

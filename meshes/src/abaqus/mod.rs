@@ -22,7 +22,7 @@ use zelus_core::register;
 use super::document::finish;
 use super::mesh::Mesh;
 
-/// Reads an input file; gives warnings of what it says and no mesh holds.
+/// Reads an input file; warns of contents that no mesh holds.
 ///
 /// # Errors
 /// A file that cannot be read, data that do not fit their keyword, names that are not there.

@@ -48,7 +48,7 @@ const WITHOUT_MESH: [&str; 28] = [
 /// A label or set within an instance; the name of the instance is empty outside of all.
 pub(super) type Named = (String, String);
 
-/// What is read so far.
+/// Contents read so far.
 #[derive(Default)]
 pub(super) struct Model {
     pub mesh: Mesh,
@@ -70,7 +70,7 @@ pub(super) struct Model {
     /// Keywords that are not read, with their number.
     unread: BTreeMap<String, usize>,
     structural: BTreeMap<String, usize>,
-    /// Types whose elements come in as simpler ones: what is left out, and what to do.
+    /// Types whose elements come in as simpler ones: the missing feature, and the remedy.
     simpler: BTreeMap<String, (&'static str, &'static str)>,
     pub report: Report,
 }
@@ -232,7 +232,7 @@ impl Model {
                 let first = numbers.next().unwrap_or_else(|| Err(card.wrong("a range has no beginning")))?;
                 let last = numbers.next().unwrap_or(Ok(first))?;
                 let by = numbers.next().unwrap_or(Ok(1))?.max(1);
-                // what a range goes through need not all be there
+                // a range may contain labels that do not exist
                 let labels = if of_nodes { &self.nodes } else { &self.elements };
                 let range = (first..=last).step_by(by as usize);
                 out.extend(range.filter_map(|label| labels.get(&(scope.to_owned(), label)).copied()));
@@ -337,7 +337,7 @@ fn renumber(ids: &mut [u32]) {
 
 /// The name of the group of a set or surface.
 pub(super) fn group_name(scope: &str, name: &str) -> String {
-    // what names an instance stands in capitals, however it is written
+    // the name of an instance is in capitals, however it is written
     let name = match name.split_once('.') {
         Some((instance, own)) => format!("{}_{own}", instance.to_ascii_uppercase()),
         None if scope.is_empty() => name.to_owned(),

@@ -9,7 +9,7 @@ use super::model::{Model, group_name};
 use crate::faces::FaceCells;
 use crate::mesh::{Load, LoadKind, Pair, Support};
 
-/// What the file says of surfaces that act on each other, and of loads on faces.
+/// Contact pairs of the file, and loads on faces.
 #[derive(Default)]
 pub(super) struct Interactions {
     /// Coefficients of friction by surface interaction, in capitals.

@@ -6,7 +6,7 @@ use flate2::read::ZlibDecoder;
 
 use super::xml::{File, Tag};
 
-/// Most bytes of an array: what is damaged must not fill the memory.
+/// Most bytes of an array: damaged lengths must not fill the memory.
 const MOST: u64 = 1 << 34;
 
 /// The numbers of an array.
@@ -89,7 +89,7 @@ fn base64(text: &[u8]) -> Vec<u8> {
     out
 }
 
-/// What an array holds: its length and its bytes, or the number of its blocks, their sizes and the compressed blocks.
+/// Contents of an array: its length and its bytes, or the number of its blocks, their sizes and the compressed blocks.
 fn content(data: &[u8], file: &File<'_>) -> Option<Vec<u8>> {
     let number = |at: usize| -> Option<usize> {
         let bytes = data.get(at.checked_mul(file.header)?..at.checked_add(1)?.checked_mul(file.header)?)?;

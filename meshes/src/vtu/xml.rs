@@ -1,6 +1,6 @@
 //! The tags of a file, and where its arrays are.
 
-/// A tag with what stands behind it up to the next.
+/// A tag with the text behind it up to the next.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tag<'a> {
     head: &'a str,
@@ -24,7 +24,7 @@ impl<'a> Tag<'a> {
     }
 }
 
-/// The arrays of a piece by what they belong to.
+/// The arrays of a piece by the entities that they belong to.
 #[derive(Debug, Default)]
 pub(super) struct Piece<'a> {
     pub points: Vec<Tag<'a>>,

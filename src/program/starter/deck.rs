@@ -2,7 +2,7 @@
 
 use zelus_meshes::mesh::{LoadKind, Mesh, Pair, Plane, Support};
 
-/// `ProjectParameters.json` with a comment on what to decide.
+/// `ProjectParameters.json` with comments on the decisions to take.
 pub(super) fn text(mesh: &Mesh, stem: &str, space: usize, supports: &[Support]) -> String {
     let contact: Vec<&Pair> = mesh.pairs.iter().filter(|pair| !pair.tied).collect();
     let tied: Vec<&Pair> = mesh.pairs.iter().filter(|pair| pair.tied).collect();
@@ -34,7 +34,7 @@ pub(super) fn text(mesh: &Mesh, stem: &str, space: usize, supports: &[Support]) 
     "parallel_type": "OpenMP",
     "echo_level": 1,
     "start_time": 0.0,
-    "end_time": 1.0 // time orders the loads: "1.0*t" of a load reaches its whole at the end
+    "end_time": 1.0 // time is the load factor: a load "1.0*t" ramps to its full value at t = 1
   }},
   "solver_settings": {{
     "solver_type": "Static", // "Dynamic" with inertia; `zelus describe Dynamic`
@@ -57,7 +57,7 @@ pub(super) fn text(mesh: &Mesh, stem: &str, space: usize, supports: &[Support]) 
         "kratos_module": "KratosMultiphysics",
         "Parameters": {{
           "model_part_name": "Structure",
-          "output_path": "vtu_output" // open the .pvd file in ParaView; without lists it has what most runs are looked at for
+          "output_path": "vtu_output" // open the .pvd file in ParaView; without lists it has the default output variables
         }}
       }}
     ]
@@ -146,7 +146,7 @@ fn loads(mesh: &Mesh, space: usize) -> Vec<String> {
     .collect()
 }
 
-/// `{"0": ["Part"], "1": […]}` of what `name` gives of each pair.
+/// `{"0": ["Part"], "1": […]}` with `name` of each pair.
 fn by_pair(pairs: &[&Pair], name: impl Fn(&Pair) -> String) -> String {
     let items: Vec<String> = pairs.iter().enumerate().map(|(at, pair)| format!("\"{at}\": {}", name(pair))).collect();
     format!("{{{}}}", items.join(", "))

@@ -56,7 +56,7 @@ fn parts(mesh: &Mesh) -> Vec<(String, Option<&Material>)> {
         out.push((format!("Structure.{}", group.name), material));
     }
     if (0..mesh.cells.len()).any(|cell| is_element(cell as u32) && !covered[cell]) {
-        // the whole first: what follows is for its parts
+        // the whole first: later entries are for its parts
         out.insert(0, ("Structure".to_owned(), None));
     }
     out

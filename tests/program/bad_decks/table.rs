@@ -1,4 +1,4 @@
-//! The bad decks: what is done to the good one, and what the message must say about it.
+//! The bad decks: the change of the good one, and the words of the message.
 
 /// One change of the good deck.
 pub enum Change {

@@ -1,7 +1,7 @@
 //! Two multipliers a constraint: ℓ = (λ₁ + λ₂) g − α/2 (λ₁ − λ₂)² while it acts.
 //!
-//! At the solution they share the force, λ₁ = λ₂ = λ/2, whatever the coupling α > 0. No multiplier has a zero on the
-//! diagonal, which is what the method is for; the matrix stays indefinite, as that of any saddle point.
+//! At the solution they share the force, λ₁ = λ₂ = λ/2, whatever the coupling α > 0. No multiplier has a zero on the diagonal: this is
+//! the purpose of the method. The matrix stays indefinite, as that of any saddle point.
 
 use serde::Deserialize;
 use zelus_core::processes::ProcessEntry;

@@ -8,13 +8,13 @@ use zelus_core::scalar::Real;
 use crate::active_set::ActiveSetStrategy;
 use crate::method::{ConstraintState, Gradient, Method};
 
-/// What constraints act before the first solve.
+/// Constraints that act before the first solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum InitialActiveSet {
     /// None.
     Empty,
-    /// Those that the strategy picks.
+    /// Constraints that the strategy picks.
     Checked,
 }
 

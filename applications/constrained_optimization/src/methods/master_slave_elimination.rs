@@ -33,13 +33,13 @@ struct EliminationInteraction {
     springs: System,
 }
 
-/// −f′ at a node: what the elements exert on its position; collective.
+/// −f′ at a node: the force of the elements on its position; collective.
 fn force(springs: &System, part: &ModelPart, node: u32) -> Result<f64> {
     let own = part.ranks.agree(own_force(springs, &part.view(), node))?;
     Ok(if part.share.is_some() { part.ranks.total(own) } else { own })
 }
 
-/// What the elements of this rank exert.
+/// Force of the elements of this rank on the node.
 fn own_force(springs: &System, view: &StepView<'_>, node: u32) -> Result<f64> {
     let mut sum = 0.0;
     let mut local = LocalSystems::default();

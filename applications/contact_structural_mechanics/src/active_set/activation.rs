@@ -1,4 +1,4 @@
-//! Which slave nodes begin a step in contact, by their gap; and what nodes without contact keep: nothing.
+//! Decides by their gap which slave nodes begin a step in contact; open nodes keep nothing.
 
 use std::collections::BTreeSet;
 

@@ -1,10 +1,10 @@
 //! Active sets that come back or do not come to rest: found, said and settled.
 //!
-//! A set that returns after others is a cycle: Newton's iteration would run through it for ever, because states change
-//! before displacements have followed. From then on, as from an iteration on by which sets should have come to rest, states
-//! change in converged states only: the set is held until the iteration has converged with it, then the rules decide on
-//! what is an equilibrium. Where that comes back to a set too, no set fulfils all conditions at the resolution of the
-//! mesh; that one is taken which violates them least, if that is little, and the step fails otherwise.
+//! A set that returns after others is a cycle: Newton's iteration would run through it for ever, because states change before
+//! displacements have followed. From then on, and from a limit of iterations on, states change in converged states only: the set is
+//! held until the iteration has converged with it, then the rules decide on an equilibrium. Where that comes back to a set too, no set
+//! fulfils all conditions at the resolution of the mesh; that one is taken which violates them least, if that is little, and the step
+//! fails otherwise.
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
@@ -42,7 +42,7 @@ pub(crate) struct CycleGuard {
     /// Whether states change in converged states only.
     #[serde(skip)]
     held: bool,
-    /// Sets that have converged, with what they violate.
+    /// Sets that have converged, with their violation.
     #[serde(skip)]
     converged: Vec<(Vec<NodeState>, f64)>,
     warned: bool,
@@ -139,9 +139,10 @@ impl CycleGuard {
         if best <= ALLOWED && self.converged.len() < 2 * MOST_CHANGES {
             return SetOutcome::Change;
         }
+        let word = if changing.len() == 1 { "node" } else { "nodes" };
         let nodes = named(changing.into_iter().map(|at| ids(decisions[at].0)));
         SetOutcome::Failed(format!(
-            "the contact states of nodes {nodes} find no rest; they violate contact by {share:.1e} of the largest pressure"
+            "contact at {word} {nodes} does not settle (no consistent active set); violation {share:.2} × the largest pressure"
         ))
     }
 

@@ -125,7 +125,7 @@ impl<'a> Rules<'a> {
             }
             if frictional {
                 state.law.traction = decision.traction;
-                // By Nitsche's method points carry what the integration finds.
+                // With Nitsche's method points carry the tractions of the integration.
                 if !matches!(self.formulation.multiplier, Multiplier::Body) {
                     state.law.carried = decision.traction;
                 }
@@ -186,7 +186,7 @@ impl<'a> Rules<'a> {
         let whole = formulation.multiplier.vector(&part.slave_nodes, owner, normal);
         let driven = held.contains(&Held::KeptInStick);
         let multiplier = match formulation.multiplier {
-            // No multiplier holds what supports move: the slip itself says what would.
+            // No multiplier restrains motion that supports prescribe: the slip itself gives the traction that would.
             Multiplier::Vector(_) if driven => {
                 let along = |c: usize| held[c] == Held::KeptInStick && norm(slip) > 0.0;
                 let normal_part = scale(normal, dot(whole, normal));
@@ -194,7 +194,7 @@ impl<'a> Rules<'a> {
                 let free = std::array::from_fn(|c| if along(c) { 0.0 } else { kept[c] });
                 add(add(normal_part, free), scale(slip, stiffness / parameters.scale_factor))
             }
-            // What slides, slides along what is free.
+            // A sliding node slides along the directions that are free.
             Multiplier::Vector(_) => {
                 add(scale(normal, dot(whole, normal)), along_free_tangents(tangential(whole, normal), normal, held))
             }

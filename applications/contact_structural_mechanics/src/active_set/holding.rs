@@ -1,4 +1,4 @@
-//! Slave nodes that supports hold together with what they face, and what becomes of their multipliers.
+//! Supports of slave nodes together with the master surface opposite them, and the constrained multipliers there.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,7 +28,7 @@ const LEAST_SLOPE: f64 = 0.1;
 /// Difference of prescribed motions, over their size, from which on they move a contact.
 const SAME_MOTION: f64 = 1e-9;
 
-/// Nodes that supports hold, and what was said of them.
+/// Nodes that supports hold, and whether they have been reported.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub(crate) struct Holding {
     fixed: BTreeMap<u32, Fixed>,
@@ -36,7 +36,7 @@ pub(crate) struct Holding {
     said: bool,
 }
 
-/// A pair as supports are looked at.
+/// A pair, as the treatment of supports needs it.
 #[derive(Clone, Copy)]
 pub(crate) struct FacetsOfPair<'a> {
     /// The slave facet.
@@ -47,7 +47,7 @@ pub(crate) struct FacetsOfPair<'a> {
     pub master: &'a Facet,
 }
 
-/// A slave node that is held with what it faces.
+/// A slave node that supports hold together with the opposite master.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HeldNode {
     /// Components in which both sides are held.
@@ -73,7 +73,7 @@ impl Holding {
         carrier.node_map(&mut self.planes);
     }
 
-    /// Step start: what is fixed now, and which of it are planes of symmetry.
+    /// Step start: finds the fixed components, and the planes of symmetry among them.
     pub(crate) fn begin_step(&mut self, part: &ModelPart, interfaces: &[Interface]) {
         self.fixed = fixed_components(part, interfaces);
         self.planes = symmetry_planes(part, interfaces, &self.fixed);
@@ -138,7 +138,7 @@ impl Holding {
         }
     }
 
-    /// Decides what becomes of the multipliers of the slave nodes by this formulation; gives the note of it.
+    /// Decides the constrained multipliers of the slave nodes by this formulation; returns the note about them.
     pub(crate) fn hold<'a>(
         &mut self,
         part: &ModelPart,
@@ -214,9 +214,10 @@ impl Holding {
             .collect();
         let along = if along_normals { "along their normals".to_owned() } else { along.join(", ") };
         let ids: Vec<String> = dropped.keys().take(5).map(|&n| part.nodes.ids[n as usize].to_string()).collect();
+        let word = if count == 1 { "node" } else { "nodes" };
         let fact = format!(
-            "supports hold {count} slave nodes together with what they face: multipliers without equation, {along}; \
-             nodes {}{}",
+            "supports fix {count} slave {word} and the opposite surface alike: multipliers without influence are \
+             constrained, {along}; {word} {}{}",
             ids.join(" "),
             if count > ids.len() { " …" } else { "" }
         );

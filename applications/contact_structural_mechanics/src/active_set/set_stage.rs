@@ -54,7 +54,7 @@ impl SetStage {
             self.cycles.restrict(&mut decisions, &before);
             messages.extend(self.cycles.keep(&decisions, &ids(part, states), part.info.step));
         } else if setup.settings.formulation.frictional() {
-            // What points decide they decide in each evaluation of forces: nodes only tell of it.
+            // With decisions at integration points each evaluation of forces decides: nodes only report it.
             forced_points::hold_turned(states, &mut decisions, &before, setup.resolution);
         }
         rules.apply(part, states, &decisions, &before)

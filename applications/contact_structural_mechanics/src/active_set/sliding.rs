@@ -102,7 +102,7 @@ pub(crate) fn find_tangents(
     }
 }
 
-/// Trial traction q̂ = k P λ + κ c s of a node with slip s, and what bounds it.
+/// Trial traction q̂ = k P λ + κ c s of a node with slip s, and its bound.
 struct TrialTraction {
     traction: [f64; 3],
     of_slip: [f64; 3],

@@ -28,8 +28,8 @@ pub(crate) struct StablePenalty {
 }
 
 impl StablePenalty {
-    /// Step start: lowers the penalty of all nodes to what the step carries, and never raises it: a spring that stiffens under
-    /// load makes energy. A penalty that is `given`, or `weighted` and so by area, stays, with a warning.
+    /// Step start: lowers the penalty of all nodes to one that is stable for the step, and never raises it: a spring that stiffens
+    /// under load makes energy. A penalty that is `given`, or `weighted` and so by area, stays, with a warning.
     ///
     /// `revolution` is the area of a facet by length and radius where the plane is rotated, `stiffened` the factor by which the
     /// penalty grows with the gap, `delta_time_factor` that of steps with contact.

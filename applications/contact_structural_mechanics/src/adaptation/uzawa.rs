@@ -1,4 +1,4 @@
-//! Uzawa's outer loop: the pressure that is kept follows the multipliers until nothing gives way (eq. D.10).
+//! Uzawa's outer loop: the Uzawa pressure follows the multipliers until no elastic gap is left (eq. D.10).
 
 use serde::{Deserialize, Serialize};
 use zelus_core::entities::Outer;

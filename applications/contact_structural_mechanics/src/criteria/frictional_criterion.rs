@@ -133,9 +133,9 @@ fn tractions(measures: &Measures<'_>) -> Sizes {
     sizes
 }
 
-/// The sizes that a relative measure of residuals refers to. A node that has come to slide obeys another equation than at the
-/// start of the step, so what it left when states last changed counts too. Where nodes slide, friction is what bodies bear now:
-/// a drag far beyond it begins with residuals that say nothing of that.
+/// The sizes that a relative measure of residuals refers to. A node that has come to slide obeys another equation than at the start of
+/// the step, so its residual when states last changed counts too. Where nodes slide, the present friction of the bodies counts: a drag
+/// far beyond it begins with residuals that tell nothing of it.
 fn references(measures: &Measures<'_>) -> [f64; 3] {
     let start = measures.references.iter().map(Vec::as_slice);
     let left: Vec<Sizes> = start.chain(measures.switched).map(|r| split(measures, r, true)).collect();

@@ -1,7 +1,7 @@
 //! Convergence criteria of contact: displacements and multipliers are measured apart.
 //!
-//! Every tolerance is of a norm. Kratos' own criteria of these names compare sums of squares, so that a tolerance of 1e-4
-//! leaves 1e-2 on the norm there. That the active set no longer changes is asked of every iteration beside them.
+//! Every tolerance is of a norm. Kratos' own criteria of these names compare sums of squares, so that a tolerance of 1e-4 leaves 1e-2
+//! on the norm there. Beside them, every iteration must leave the active set unchanged.
 
 mod contact_criterion;
 mod frictional_criterion;

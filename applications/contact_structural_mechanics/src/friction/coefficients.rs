@@ -32,9 +32,9 @@ impl Default for FrictionSettings {
     }
 }
 
-/// Writes the number of the law, the mean over the facets of a node, and says how stick and slip are told apart.
-/// Facets whose properties have none count with the pair's coefficient where the law takes one, else with what the node
-/// has. Without a number anywhere, contact always slides, and a warning among the `messages` says so.
+/// Writes the number of the law, the mean over the facets of a node, and says how stick and slip are told apart. Facets whose
+/// properties have none count with the pair's coefficient where the law takes one, else with the node's own coefficient. Without a
+/// number anywhere, contact always slides, and a warning among the `messages` says so.
 ///
 /// # Errors
 /// A number below zero.

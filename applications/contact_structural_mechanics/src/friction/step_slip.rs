@@ -9,8 +9,8 @@ use crate::law::{Multiplier, StepParameters};
 use crate::mortar::tangential;
 use crate::slave_nodes::SlaveStates;
 
-/// Slip of a node in this step (length). Where surfaces give way, that of a node in contact without its elastic part:
-/// (q − k P λ)/(κ ε), with the trial traction q.
+/// Slip of a node in this step (length). In the regularised methods the slip of a node in contact is without its elastic part: (q − k P
+/// λ)/(κ ε), with the trial traction q.
 pub(crate) fn slip(
     part: &ModelPart,
     states: &SlaveStates,

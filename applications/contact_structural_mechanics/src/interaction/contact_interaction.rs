@@ -113,7 +113,7 @@ impl ContactInteraction {
         self.acting && !self.contact.setup.settings.solver.keeps_mass
     }
 
-    /// Writes what is looked at of the present state.
+    /// Writes the default output variables of the present state.
     fn write_results(&self, part: &mut ModelPart) -> Result<()> {
         self.contact.write_states(part);
         // explicit steps are many and short: the forces would cost as much as the steps

@@ -158,10 +158,10 @@ impl ContactState {
         }
     }
 
-    /// Takes up what it remembered of the same interfaces.
+    /// Restores its state of the same interfaces.
     ///
     /// # Errors
-    /// Those of making blocks.
+    /// Errors of making blocks.
     pub(super) fn resume(&mut self, part: &mut ModelPart, state: RememberedContact) -> Result<()> {
         let RememberedContact { pairing, states, holding, resolution, steps_since_search } = state;
         holding.check(part.nodes.len())?;
@@ -236,7 +236,7 @@ impl ContactState {
     /// Takes in pairs that were found within the step.
     ///
     /// # Errors
-    /// Those of making blocks.
+    /// Errors of making blocks.
     pub(super) fn take_in(&mut self, part: &mut ModelPart, pairs: Vec<Pair>) -> Result<()> {
         self.pairing.add(pairs, &self.setup)?;
         self.hold(part);
@@ -244,7 +244,7 @@ impl ContactState {
         Ok(())
     }
 
-    /// Finds the slave nodes that supports hold with what their pairs face.
+    /// Finds the slave nodes that supports hold together with their masters.
     fn hold(&mut self, part: &ModelPart) {
         if self.setup.settings.mind_supports {
             let keys = self.pairing.keys();
@@ -269,7 +269,7 @@ impl ContactState {
         }
     }
 
-    /// Step start: takes up multipliers from outside, and what was accepted last is what the step compares with.
+    /// Step start: takes up multipliers from outside; the last accepted state becomes the reference of the step.
     pub(super) fn begin_step(&mut self, part: &mut ModelPart) {
         self.import_multipliers(part);
         self.states.begin_step();

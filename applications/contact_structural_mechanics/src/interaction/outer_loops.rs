@@ -1,4 +1,4 @@
-//! The loops around Newton's iteration: the checks of a converged state, and what each changes before the next iteration.
+//! The loops around Newton's iteration: the checks of a converged state, and their changes before the next iteration.
 
 use serde::{Deserialize, Serialize};
 use zelus_core::entities::Outer;
@@ -30,7 +30,7 @@ pub(super) struct OuterLoops {
     impact_error: f64,
     /// Work of contact on bodies in motion.
     pub work: ContactWork,
-    /// Looks for what pairs do not see.
+    /// Check for penetration outside of pairs.
     #[serde(skip)]
     penetration_check: PenetrationCheck,
 }
@@ -69,7 +69,7 @@ impl OuterLoops {
     /// The checks of a converged state, in the order in which one needs the other.
     ///
     /// # Errors
-    /// Those of making blocks; contact that a deck asks for and that is not there.
+    /// Errors of making blocks; contact that a deck asks for and that is not there.
     pub(super) fn judge(
         &mut self,
         part: &mut ModelPart,
@@ -112,7 +112,7 @@ impl OuterLoops {
             set.find_tangents(part, &mut contact.states, &contact.setup);
             return Ok(Outer::Again);
         }
-        // Points in the master press in every state that has converged.
+        // With Nitsche's method a penetrating point is always active, so this check is skipped.
         if !contact.setup.by_points()
             && let Some(why) = Rules::of(&contact.setup).passed_through(part, &contact.states)
         {
@@ -128,7 +128,7 @@ impl OuterLoops {
         {
             return Ok(Outer::Failed(why));
         }
-        // Of bodies in motion the energy that contact makes tells what is too much.
+        // For bodies in motion the energy error of contact decides instead.
         if !contact.setup.parameters.dynamic
             && solver.largest_penetration > 0.0
             && let Some(why) = pierced(part, &contact.pairing, &contact.states)

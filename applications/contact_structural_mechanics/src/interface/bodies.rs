@@ -1,4 +1,4 @@
-//! The elements behind slave facets, which say what traction acts on them.
+//! The elements behind slave facets, which give the traction on them.
 
 use rustc_hash::FxHashMap;
 use zelus_core::Result;
@@ -222,7 +222,7 @@ impl SlaveElementFace {
             });
             across = across.max(stretched.sum());
         }
-        // What the trace inequality of linear stress asks beyond that of constant stress.
+        // Factor of the trace inequality of linear stress over that of constant stress.
         let space = shape.space as f64;
         let by_degree = if shape.curved { 2.0 * (space + 1.0) / space } else { 1.0 };
         let size = places.iter().flat_map(|a| places.iter().map(|b| norm(sub(*a, *b))));

@@ -10,7 +10,7 @@ use zelus_core::vector3::{norm, sub};
 
 use crate::mortar::MOST_NODES;
 
-/// Which sides a facet can be.
+/// Sides that a facet can be on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Roles {
     /// Carries multipliers.

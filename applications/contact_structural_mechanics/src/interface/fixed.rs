@@ -7,7 +7,7 @@ use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::facets::Interface;
 
-/// Which components of a node's displacement are prescribed, directly or by constraints on prescribed unknowns.
+/// Mask of prescribed components of a node's displacement, directly or by constraints on prescribed unknowns.
 pub type Fixed = [bool; 3];
 
 /// Prescribed components at the nodes of interfaces; free nodes are left out.
@@ -25,7 +25,7 @@ pub fn fixed_components(part: &ModelPart, interfaces: &[Interface]) -> BTreeMap<
     interfaces.iter().flat_map(|i| &i.nodes).map(fixed).filter(|(_, fixed)| fixed.contains(&true)).collect()
 }
 
-/// Constraints by what they eliminate.
+/// Constraints by the unknown that they eliminate.
 type Constraints<'a> = BTreeMap<NodeUnknown, &'a [(NodeUnknown, f64)]>;
 
 fn is_fixed(part: &ModelPart, constraints: &Constraints<'_>, unknown: NodeUnknown, depth: usize) -> bool {

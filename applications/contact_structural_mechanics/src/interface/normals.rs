@@ -11,7 +11,7 @@
 //! dn = (I − n⊗n)/|S| Σ dv with, for the first, dv = (da × b + a × db)/(|a|² |b|²) − 2 v (a·da/|a|² + b·db/|b|²), and for
 //! the second (I − v⊗v)/|a × b| (da × b + a × db).
 //!
-//! Normals of nodes on planes of symmetry lie in them: what facets and their mirror images add up to.
+//! Normals of nodes on planes of symmetry lie in them: the sum over facets and their mirror images.
 
 use std::collections::BTreeMap;
 
@@ -86,13 +86,13 @@ pub struct NormalPatches {
 }
 
 impl NormalPatches {
-    /// Those of the mesh nodes of a model part with `count` nodes, of all facets around each.
+    /// Normals of the mesh nodes of a model part with `count` nodes, of all facets around each.
     pub fn new(count: usize, interfaces: &[Interface], weights: NodalNormals) -> Self {
         let nodes: Vec<u32> = (0..count as u32).collect();
         Self::of_items(nodes, interfaces, weights, &|_, _, _, node| Some(node))
     }
 
-    /// Those of slave nodes, of the facets of their own patch alone.
+    /// Normals of slave nodes, of the facets of their own patch alone.
     pub fn of_slaves(patches: &Patches, interfaces: &[Interface], weights: NodalNormals) -> Self {
         let nodes: Vec<u32> = patches.all().map(|slave| patches.mesh_node(slave)).collect();
         Self::of_items(nodes, interfaces, weights, &|i, f, local, _| {

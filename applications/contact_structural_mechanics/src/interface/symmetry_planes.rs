@@ -19,8 +19,8 @@ const LEAST_IN_PLANE: f64 = 0.5;
 
 /// The components that normals of nodes at the edge of a surface lack.
 ///
-/// Such a node has facets on one side only; its mirror images would take what tilts its normal out of the plane. Supports are
-/// planes of symmetry where the initial surface meets them at right angles, or curves towards it.
+/// Such a node has facets on one side only; its mirror images would cancel the tilt of its normal out of the plane. Supports are planes
+/// of symmetry where the initial surface meets them at right angles, or curves towards it.
 pub fn symmetry_planes(
     part: &ModelPart,
     interfaces: &[Interface],

@@ -53,14 +53,14 @@ pub const DEVIATIONS: &[Deviation] = &[
         of: PROCESSES,
         key: "mind_supports",
         kratos: "normals and multipliers do not know of supports",
-        here: "normals lie in planes of symmetry, multipliers without equation are dropped",
+        here: "normals lie in planes of symmetry, multipliers there are constrained",
         source: "no counterpart",
     },
     Deviation {
         of: &[TYING],
         key: "mind_supports",
         kratos: "multipliers do not know of supports",
-        here: "multipliers without equation follow their neighbours",
+        here: "constrained multipliers follow their neighbours",
         source: "no counterpart",
     },
     Deviation {
@@ -74,7 +74,7 @@ pub const DEVIATIONS: &[Deviation] = &[
         of: PROCESSES,
         key: "least_coverage",
         kratos: "every node that has an overlap may be in contact",
-        here: "nodes beside the master, whose gap is extrapolated to where no master is, are not",
+        here: "nodes at the master's edge, whose gap is extrapolated beyond the master, are not",
         source: "no counterpart",
     },
     Deviation {
@@ -87,9 +87,9 @@ pub const DEVIATIONS: &[Deviation] = &[
     Deviation {
         of: PROCESSES,
         key: "search_parameters.search_within_step",
-        kratos: "pairs are those of the start of the step, and those that nodes came through",
+        kratos: "pairs are those of the start of the step, and those whose facets nodes have penetrated",
         here: "pairs are added wherever facets come to face each other",
-        source: "base_contact_search_process.cpp; what nodes came through has no counterpart",
+        source: "base_contact_search_process.cpp; penetrated facets have no counterpart",
     },
     Deviation {
         of: &[ALM, PENALTY],

@@ -29,7 +29,7 @@ impl FirstIterateTangent {
         part.info.marks.insert(NORMALS_OF_FIRST_ITERATION, true);
     }
 
-    /// That of the present iteration in `dimension` dimensions.
+    /// Choice for the present iteration in `dimension` dimensions.
     pub fn of(view: &StepView<'_>, dimension: usize) -> Self {
         match view.decides_normals() {
             false => Self::Exact,

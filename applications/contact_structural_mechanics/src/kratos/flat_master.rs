@@ -21,7 +21,7 @@ pub struct FlatMaster<T: Real> {
 }
 
 impl<T: Real> FlatMaster<T> {
-    /// That of a pair of facets of first order.
+    /// Flat master of a pair of facets of first order.
     pub fn new(pair: &PairGeometry<T>) -> Self {
         let (normal, count) = (value(pair.slave_normal), pair.slave.len() as f64);
         let lift = pair.slave.map(|x| {

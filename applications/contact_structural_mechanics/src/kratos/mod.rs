@@ -1,8 +1,8 @@
 //! Behaviour of contact that only reproduces Kratos, behind the settings that `--like kratos` lays under a deck.
 //!
-//! [`DEVIATIONS`] names each with its source; `tests/contact/like_kratos.rs` switches each off and says what changes. Where one is a
-//! formula of its own it stands here ([`FlatMaster`], [`FirstIterateTangent`], [`PenaltyUnit`]);
-//! the others are values of settings whose other value is the default.
+//! [`DEVIATIONS`] names each with its source; `tests/contact/like_kratos.rs` switches each off and states the change. Where one is a
+//! formula of its own it stands here ([`FlatMaster`], [`FirstIterateTangent`], [`PenaltyUnit`]); the others are values of settings
+//! whose other value is the default.
 
 mod deviations;
 mod first_iterate;

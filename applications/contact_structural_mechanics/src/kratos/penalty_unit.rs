@@ -17,7 +17,7 @@ pub struct PenaltyUnit {
 }
 
 impl PenaltyUnit {
-    /// That of these points; `by_length` in the plane, where weighted gaps hold a length. Collective.
+    /// Unit of these points; `by_length` in the plane, where weighted gaps hold a length. Collective.
     pub fn of(ranks: &Ranks, points: &[[f64; 3]], by_length: bool) -> Self {
         let length = unit_of_length(ranks, points);
         Self { length, measure: if by_length { length } else { length * length } }
@@ -36,7 +36,7 @@ impl PenaltyUnit {
     }
 }
 
-/// That power of a thousand in which points extend over about one: between 1/√1000 and √1000 (length).
+/// Power of a thousand in which points extend over about one: between 1/√1000 and √1000 (length).
 ///
 /// The extent is the diagonal of the box around those of all ranks; 1 without any. In units a thousand times smaller it is a
 /// thousand times the number, to the last bit. Collective.

@@ -1,9 +1,9 @@
-//! Equations of slave nodes that supports hold together with what they face.
+//! Equations of slave nodes that supports hold together with the master surface opposite them.
 //!
-//! Along a component in which both sides are held nothing can move, so that the equation of the multiplier there has no
-//! unknown that could obey it. On a plane of symmetry the traction has no such component: the multiplier keeps what it has,
-//! which is nothing. Elsewhere it follows the multipliers of the facet's other nodes, so that constant tractions are
-//! transmitted exactly: its dual function is shared out among them. The remaining equations of the node:
+//! Along a component in which both sides are held nothing can move, so that the equation of the multiplier there has no unknown that
+//! could obey it. On a plane of symmetry the traction has no such component: the multiplier there stays zero. Elsewhere it follows the
+//! multipliers of the facet's other nodes, so that constant tractions are transmitted exactly: its dual function is shared out among
+//! them. The remaining equations of the node:
 //! - stick: the components that are free;
 //! - slip: k g̃ along m, the free part of the normal, and the law of friction along e, the free tangent; e and m are unit
 //!   vectors, and e is at right angles to m and n.
@@ -97,7 +97,7 @@ mod tests {
         let slides = along_free_tangents([0.8, -0.6, 2.0], slope, wall);
         assert!((0..3).all(|c| (slides[c] - [0.0, 0.0, 2.0][c]).abs() < 1e-15), "{slides:?}");
         assert_eq!(free_normal(slope, wall), [0.0, 1.0, 0.0]);
-        // What moves with its supports is not restricted, and a clamp leaves no free normal.
+        // A node that moves with its supports is not restricted, and a clamp leaves no free normal.
         assert_eq!(along_free_tangents([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [Held::KeptInStick; 3]), [1.0, 0.0, 0.0]);
         assert_eq!(free_normal(slope, [Held::Follows; 3]), [0.0; 3]);
     }

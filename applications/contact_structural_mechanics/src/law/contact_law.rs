@@ -69,7 +69,7 @@ pub enum SlipMeasure {
     /// None: laws without friction.
     #[default]
     None,
-    /// Since the last accepted state, rotated with the slave facet. Its rate is what tractions do work on.
+    /// Since the last accepted state, rotated with the slave facet. Tractions do work on its rate.
     Rotated,
     /// By the change of the operators in the step where both change by more than the threshold, else by displacement increments.
     OfOperators(OperatorThreshold),

@@ -5,15 +5,15 @@
 //! - P = σ + γ g, p = min(P, 0);
 //! - q = t − σ n + r° + κ γ s, τ = q where |q| ≤ b(p) and else b(p) q/|q|, with the slip s of the step against the motion.
 //!
-//! r = τ − (t − σ n) is what the tractions of a mesh lack; r° is that of the last accepted state, averaged at the nodes and
-//! turned with the facet. Without it bodies that stick would slip by it in every step.
+//! r = τ − (t − σ n) is the discretisation error of the traction; r° is that of the last accepted state, averaged at the nodes and
+//! rotated with the facet. Without it bodies that stick would slip by it in every step.
 //!
-//! The force f = p n + τ acts on the slave, −f on the master, and the slave's element has the consistent term
-//! −θ/γ ∫ (f − f°)·δt, where f° = t with friction and σ n without. θ = 1 is symmetric, 0 incomplete, −1 skew. The term is
-//! there too where p = 0; beside the master there is none, and no force (Chouly, Hild and Renard 2015). M is the stiffness of
-//! the material across the face, A the face, V the volume of the element, all in the initial state: γ = M A/V is what the
-//! trace inequality of an element of constant stress asks of the symmetric variant; of one of linear stress in d dimensions it asks
-//! 2 (d + 1)/d times as much (Warburton and Hesthaven 2003), which M has of faces of second order.
+//! The force f = p n + τ acts on the slave, −f on the master, and the slave's element has the consistent term −θ/γ ∫ (f − f°)·δt, where
+//! f° = t with friction and σ n without. θ = 1 is symmetric, 0 incomplete, −1 skew. The term is there too where p = 0; at the master's
+//! edge, where no master is opposite, there is none, and no force (Chouly, Hild and Renard 2015). M is the stiffness of the material
+//! across the face, A the face, V the volume of the element, all in the initial state: γ = M A/V is the bound of the trace inequality
+//! of an element of constant stress for the symmetric variant; for one of linear stress in d dimensions it is 2 (d + 1)/d times as
+//! large (Warburton and Hesthaven 2003), a factor that M includes for faces of second order.
 //!
 //! Tractions are those of the initial area, P·N; along the facet they are interpolated between inner points, which is exact
 //! where the element is a parallelepiped, and divided there by the change of area.
@@ -31,7 +31,7 @@ use zelus_core::vector3::{add, constant, dot, norm, normalised, scale, sub, valu
 /// Weight of held nodes above which a point is held in contact.
 const HELD: f64 = 0.5;
 
-/// Which consistent term Nitsche's method has.
+/// Variant of the consistent term of Nitsche's method.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum NitscheVariant {
@@ -51,7 +51,7 @@ pub struct Nitsche {
     pub theta: f64,
     /// γ₀ > 0.
     pub factor: f64,
-    /// Ratio κ of what slips and gaps count with; `None` without friction.
+    /// Ratio κ of the factors of slips and gaps; `None` without friction.
     pub friction: Option<f64>,
 }
 
@@ -106,7 +106,7 @@ pub struct PointForces<T: Real> {
     pub slave: Nodal<[T; 3]>,
     /// Forces on master nodes.
     pub master: Nodal<[T; 3]>,
-    /// ∫ L f: area times traction of the slave nodes, with what they have of each point ([`nodal_shares`]).
+    /// ∫ L f: area times traction of the slave nodes, with their share of each point ([`nodal_shares`]).
     pub traction: Nodal<[f64; 3]>,
     /// ∫ L (τ − t + σ n) over the points in contact, with friction.
     pub carried: Nodal<[T; 3]>,

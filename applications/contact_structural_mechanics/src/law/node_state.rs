@@ -45,7 +45,7 @@ pub enum Held {
     Kept,
     /// It is the mean of those of the facet's nodes that are in contact and free.
     Follows,
-    /// It keeps its value while the node sticks: supports move what it faces.
+    /// It keeps its value while the node sticks: supports move the opposite master.
     KeptInStick,
 }
 

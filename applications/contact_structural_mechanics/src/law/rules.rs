@@ -1,11 +1,11 @@
 //! The rules by which slave nodes enter and leave contact, stick and slide: pure functions of nodal numbers.
 //!
-//! The augmented normal pressure p̂ = k λ_n + c g decides: active if p̂ < 0. g is the gap of the node, WG/A with its weighted
-//! gap and its area over all pairs, and c a stiffness by length. Tangentially q̂ = k P λ + κ c s with the slip s = WS/A is
-//! compared with the bound that the law of friction sets under p̂. A sticking node slides when what holds it, k P λ, is more
-//! than the bound; κ c s counts only for nodes that enter. A sliding node, which is at the bound by its own equation, sticks
-//! again when its slip has turned against its traction: then q̂ is below the bound, however small κ c s is. So the states of a
-//! solution do not depend on κ. The smallest numbers that decide are those of [`crate::resolution`].
+//! The augmented normal pressure p̂ = k λ_n + c g decides: active if p̂ < 0. g is the gap of the node, WG/A with its weighted gap and
+//! its area over all pairs, and c a stiffness by length. Tangentially q̂ = k P λ + κ c s with the slip s = WS/A is compared with the
+//! bound that the law of friction sets under p̂. A sticking node slides when its traction k P λ is more than the bound; κ c s counts
+//! only for nodes that enter. A sliding node, which is at the bound by its own equation, sticks again when its slip has turned against
+//! its traction: then q̂ is below the bound, however small κ c s is. So the states of a solution do not depend on κ. The smallest
+//! numbers that decide are those of [`crate::resolution`].
 
 use super::friction_law::Bound;
 use super::node_state::NodeState;
@@ -85,9 +85,9 @@ pub struct SlaveNumbers {
     pub trial: [f64; 3],
     /// Unit tangent τ in which the last solve took a sliding node to slide.
     pub tangent: [f64; 3],
-    /// Stiffness c: what a gap counts with against tractions (stress by length).
+    /// Complementarity parameter c_n: the factor of a gap against tractions (stress by length).
     pub stiffness: f64,
-    /// Whether supports move both sides: what slips then cannot stick, however little it is.
+    /// Whether supports move both sides: such a node cannot stick, however small its slip.
     pub driven: bool,
     /// Limit of the tangential traction.
     pub friction: Bound,
@@ -102,9 +102,9 @@ pub struct SlaveNumbers {
 impl SlaveNumbers {
     /// Augmented normal pressure p̂ = k λ_n + c g; compression is negative.
     ///
-    /// The gap of a node in contact, whose multiplier the last solve has found, is what the curvature of its path has left of
-    /// it. Against c, the stiffness of solid bodies, that would let go of the nodes of slender ones. A node without contact
-    /// has no multiplier but what a solve left of an old one, or what it had when all that it faced went away.
+    /// After a solve, the remaining gap of a node in contact comes from the curvature of its path. Against c, the stiffness of solid
+    /// bodies, that would let go of the nodes of slender ones. A node without contact has no multiplier but the remainder of an old
+    /// one, or of the time when its masters were still opposite.
     pub fn pressure(&self) -> f64 {
         let by_multiplier = || self.scale_factor * dot(self.multiplier, self.normal);
         match (self.solved, self.state.is_active()) {

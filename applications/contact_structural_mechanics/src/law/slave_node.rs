@@ -32,6 +32,6 @@ pub struct SlaveNode {
     pub held_weight: f64,
     /// Tangential traction t° of the last accepted state, where a law has a history traction (force per area).
     pub carried: [f64; 3],
-    /// Traction of all pairs of the node, where a law has it before its pairs are looked at (force per area).
+    /// Traction of all pairs of the node, where a law computes it before its pairs (force per area).
     pub traction: [f64; 3],
 }

@@ -66,7 +66,7 @@ pub struct StepParameters {
     pub normal_variation: NormalVariation,
     /// Where gaps augment the forces of augmented Lagrangians.
     pub augmentation: Augmentation,
-    /// Whether surfaces give way by traction over penalty.
+    /// Whether contact is regularised: gap and slip have an elastic part, traction over penalty.
     pub compliant: bool,
     /// Whether the step has inertia, so that friction must make no energy.
     pub dynamic: bool,
@@ -75,7 +75,7 @@ pub struct StepParameters {
 }
 
 impl StepParameters {
-    /// c: what gaps and slips of a node of this penalty and area count with against tractions (stress by length).
+    /// c: the factor of gaps and slips of a node of this penalty and area against tractions (stress by length).
     ///
     /// Where forces are augmented, weighted gaps enter them with the penalty, which is the larger part where areas are large
     /// numbers. Where they are not, that of the bodies counts alone: whatever a deck says of penalties, contact is the same.

@@ -1,7 +1,7 @@
 //! Penalties by node in explicit steps: p = f t, with the traction t = ε g n + t_t of the whole node, its gap g = g̃/A over all pairs.
 //!
 //! t_t is the elastic trial traction P R t° + κ ε s/A of the whole node, cut to the bound of the law of friction; zero without
-//! friction. Where steps iterate, the same tractions are multipliers of surfaces that give way, see [`super::alm_frictional`].
+//! friction. Where steps iterate, the same tractions are multipliers of the regularised method, see [`super::alm_frictional`].
 
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{add, constant, scale};

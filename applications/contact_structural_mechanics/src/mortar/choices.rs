@@ -1,8 +1,8 @@
 //! Choices of the integration that a pair freezes while a step is iterated, so that its operators stay continuous.
 //!
-//! The reference program's integration jumps: cells share the first vertex of the overlap by a rule on kinds of
-//! vertices, an overlap of one triangle takes plain functions for dual ones, a sliver counts for nothing. Where an
-//! equilibrium lies on such a jump no iterate reaches it, however short the step; with frozen choices one does.
+//! The reference program's integration jumps: cells share the first vertex of the overlap by a rule on kinds of vertices, an overlap of
+//! one triangle takes standard shape functions for dual ones, a sliver is ignored. Where an equilibrium lies on such a jump no iterate
+//! reaches it, however short the step; with frozen choices one does.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,14 +11,14 @@ use serde::{Deserialize, Serialize};
 pub struct Choices {
     /// Local coordinates on the slave near which the vertex lies that all cells share.
     pub origin: Option<[f64; 2]>,
-    /// The linear pieces of the slave, a bit each, on which plain functions stand in for dual ones.
+    /// The linear sub-facets of the slave, a bit each, on which standard shape functions stand in for dual ones.
     pub plain: u8,
     /// Whether slivers count: an overlap with one triangle more or less then changes nothing by a jump, and no area is lost.
     pub slivers: bool,
 }
 
 impl Choices {
-    /// Whether plain functions stand in for dual ones on a piece of the slave.
+    /// Whether standard shape functions stand in for dual ones on a sub-facet of the slave.
     pub fn is_plain(&self, piece: usize) -> bool {
         self.plain & (1 << piece) != 0
     }

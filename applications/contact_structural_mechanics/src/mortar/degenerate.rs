@@ -12,7 +12,7 @@ use zelus_core::vector3::{add, dot, norm, scale, sub};
 const COUNT: u64 = 3000;
 /// Relative difference of numbers that are the same.
 const ROUND_OFF: f64 = 1e-7;
-/// What round-off may leave of a balance, by the size of the operators: what dual functions lose at their worst condition.
+/// Largest round-off of a balance, by the size of the operators: the loss of dual functions at their worst condition.
 const BALANCE: f64 = 1e-4;
 
 /// A facet about the unit one with mistakes in it.

@@ -42,8 +42,8 @@ pub fn find_operators<T: Real>(
 /// Writes D and M to `out`, whose entries are zero, with derivatives by components of the nodal normals, [`LANES`](super::LANES) of them from the
 /// one numbered `first` on, node by node.
 ///
-/// In space the overlap of facets of first order is cut along the slave's normal: those of nodes say where points meet the master
-/// and nothing else, each point by the one interpolated there. That has three components, whatever the number of nodes.
+/// In space the overlap of facets of first order is cut along the slave's normal: those of nodes say where points meet the master and
+/// nothing else, each point by the one interpolated there. It has three components, whatever the number of nodes.
 pub fn find_operators_by_normals(
     pair: &PairGeometry<f64>,
     settings: &SegmentationSettings,

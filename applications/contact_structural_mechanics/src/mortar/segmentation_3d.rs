@@ -1,8 +1,8 @@
 //! The polygon in which a slave facet and a master facet overlap, seen along the slave's normal.
 //!
-//! Both facets are flattened onto the plane with normal n_s and the convex polygons are intersected there. What a
-//! vertex *is* (a node of either side, or a crossing of two edges) is decided on values with tolerances, which also
-//! makes coincident nodes and edges one vertex; where it is then follows in the scalar of the caller.
+//! Both facets are flattened onto the plane with normal n_s and the convex polygons are intersected there. The kind of a vertex (a node
+//! of either side, or a crossing of two edges) is decided on values with tolerances, which also makes coincident nodes and edges one
+//! vertex; its position then follows in the scalar of the caller.
 
 use super::geometry::PairGeometry;
 use super::settings::SegmentationSettings;
@@ -18,7 +18,7 @@ const TOLERANCE: f64 = 1e-12;
 /// Its exact velocity grows like the inverse of the angle, while the shape of the overlap hardly depends on it.
 const GRAZING: f64 = 1e-4;
 
-/// What a vertex of the overlap is.
+/// Kind of a vertex of the overlap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Vertex {
     /// This master node, inside the slave.

@@ -1,4 +1,4 @@
-//! What a deck may choose about the integration of a pair.
+//! Settings of a deck for the integration of a pair.
 
 use std::f64::consts::PI;
 

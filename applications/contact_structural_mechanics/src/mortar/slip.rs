@@ -13,9 +13,9 @@ pub fn tangential<T: Real>(vector: [T; 3], normal: [T; 3]) -> [T; 3] {
     sub(vector, scale(normal, dot(vector, normal)))
 }
 
-/// Objective weighted slip s_j = P [(D − D°) x¹ − (M − M°) x²]_j since the operators D°, M° were taken.
-/// Unaffected by rigid motions; a length times the measure of the facet. It holds the change of P (D x¹ − M x²), too, which is not
-/// small where facets stand open beside the node, as at a corner that rolls: tractions do no work on that.
+/// Objective weighted slip s_j = P [(D − D°) x¹ − (M − M°) x²]_j since the operators D°, M° were taken. Unaffected by rigid-body motion
+/// of the pair; a length times the measure of the facet. It holds the change of P (D x¹ − M x²), too, which is not small where facets
+/// stand open beside the node, as at a corner that rolls: tractions do no work on that.
 pub fn objective_slip<T: Real>(
     operators: &Operators<T>,
     previous: &Operators<f64>,

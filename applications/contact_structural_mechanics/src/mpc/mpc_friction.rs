@@ -71,7 +71,7 @@ impl MpcFriction {
             let bound = Bound { coefficient, threshold: constant }.at(dot(held, n).min(0.0));
             let sliding = state.law.slides == Some(true);
             let stiffness = stiffness(node) * area;
-            // The friction of a sliding node keeps the direction it had but for what the slip turns it.
+            // The friction of a sliding node keeps its direction but for the rotation by the slip.
             let kept = direction_along(before.get(&node), n);
             // A node that slides along with its friction would gain energy: it sticks, or turns where it slides far.
             let near = stiffness * norm(moved) < 2.0 * bound;

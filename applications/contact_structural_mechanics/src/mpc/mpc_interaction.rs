@@ -420,7 +420,7 @@ impl Interaction for MpcInteraction {
         let friction = self.settings.kind == MpcKind::Frictional;
         let of_node = |slave: SlaveIndex, state: &SlaveState| {
             let node = self.states.mesh_node(slave);
-            // What friction adds to the force of the constraint goes with the pressure or is the slider's own.
+            // Friction adds a force to the constraint that is proportional to the pressure, or the slider's own.
             let bound = state
                 .parameters
                 .friction

@@ -15,7 +15,7 @@ pub enum MpcKind {
     MeshTying,
 }
 
-/// Names of `contact_type`, each also with the ending of [`UPDATED`]: what it enforces, and whether contact always slides.
+/// Names of `contact_type`, each also with the ending of [`UPDATED`]: the kind of constraint, and whether contact always slides.
 const TYPES: [(&str, MpcKind, bool); 4] = [
     ("Frictionless", MpcKind::Frictionless, false),
     ("Frictional", MpcKind::Frictional, false),

@@ -29,7 +29,7 @@ pub struct MpcSettings {
     pub friction: FrictionSettings,
     /// Times in which the constraints act.
     pub interval: Interval,
-    /// Which facets are looked at.
+    /// Settings of the search for pairs.
     pub search: SearchSettings,
     /// Steps between searches.
     pub database_step_update: usize,

@@ -1,13 +1,13 @@
 //! How slave nodes follow master facets: u¹ = B u² + offset, with the rows of B from the D and M of their pairs.
 //!
-//! A node follows all its pairs together, u¹ = Σ M u² / Σ D, as the multiplier of a mortar formulation would have it: the weights
-//! add up to one, so that no force is lost, and on flat interfaces B takes the masters to the node itself, so that moments
-//! are kept and a constant stress passes. On curved interfaces B x² is beside x¹ by what the facets are off the surface, and
-//! moments are off by that much.
+//! A node follows all its pairs together, u¹ = Σ M u² / Σ D, as the multiplier of a mortar formulation would have it: the weights add
+//! up to one, so that no force is lost, and on flat interfaces B takes the masters to the node itself, so that moments are kept and a
+//! constant stress passes. On curved interfaces B x² is beside x¹ by the distance of the facets from the surface, and moments are off
+//! by that much.
 //!
-//! The reference program's weights are [`Weights::ByFacets`]: rows of D⁻¹ M of single pairs that have negative entries, since
-//! the node is beside the master, are left out; the rows that remain are added, each divided by the number of slave facets
-//! of the node. On unlike meshes more or fewer rows remain, and the weights do not add up to one.
+//! The reference program's weights are [`Weights::ByFacets`]: rows of D⁻¹ M of single pairs that have negative entries, since the node
+//! is at the master's edge, are left out; the rows that remain are added, each divided by the number of slave facets of the node. On
+//! unlike meshes more or fewer rows remain, and the weights do not add up to one.
 //!
 //! The offset closes the gap of the moment the relation is made. Ties keep it.
 

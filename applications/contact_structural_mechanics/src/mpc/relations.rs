@@ -26,7 +26,7 @@ const FINE: usize = 4;
 pub(crate) struct Relations {
     /// By pair.
     pub pairs: BTreeMap<PairKey, PairRelation>,
-    /// Of slave nodes, over their pairs.
+    /// Relations of slave nodes, over their pairs.
     pub nodes: BTreeMap<u32, NodeRelation>,
     /// Where the nodes of the interfaces were when relations were made.
     places: Vec<[f64; 3]>,

@@ -1,9 +1,10 @@
-//! Slave nodes beside the master: next to nothing of their facets is faced, and that lies at the feet of their neighbours.
+//! Slave nodes at the master's edge: next to nothing of their facets is covered by the master, and that lies at the feet of their
+//! neighbours.
 //!
-//! Where the master ends within a slave facet, the dual functions of the overlap belong to all nodes of the facet, and the
-//! gap of the far ones is extended to where no master is. Over a sliver of width w that gap counts over an area of w², against
-//! which the bodies are infinitely stiff: multipliers of 1e16 then hold what is no contact. The near nodes close the gap of
-//! the sliver on their own.
+//! Where the master ends within a slave facet, the dual functions of the overlap belong to all nodes of the facet, and the gap of the
+//! far ones is extended to where no master is. Over a sliver of width w that gap counts over an area of w², against which the bodies
+//! are infinitely stiff: multipliers of 1e16 then act where there is no contact. The near nodes close the gap of the sliver on their
+//! own.
 
 use zelus_core::geometry::mapping::vector_area;
 use zelus_core::geometry::parts;
@@ -14,10 +15,10 @@ use super::pairs_of_interfaces::Pairing;
 use crate::interface::{Roles, SlaveIndex};
 use crate::slave_nodes::{SlaveStates, SlaveSums};
 
-/// Says of each slave node that is beside the master that it is isolated: the area that it integrates, as a share of its facets,
-/// is less than `least` of the share of a neighbour, half of that where it is in contact.
+/// Marks each slave node at the master's edge as isolated: the area that it integrates, as a share of its facets, is less than `least`
+/// of the share of a neighbour, half of that where it is in contact.
 ///
-/// `weight` of a node is what lengths and areas count with about an axis of revolution.
+/// `weight` of a node is the factor of lengths and areas about an axis of revolution.
 pub(crate) fn isolate_beside(
     part: &ModelPart,
     states: &mut SlaveStates,

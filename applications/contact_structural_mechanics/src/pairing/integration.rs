@@ -52,7 +52,7 @@ impl Summands<12> for NodeIntegrals {
     }
 }
 
-/// Integrates all pairs, and finds what is too small to decide on.
+/// Integrates all pairs, and finds overlaps that are too small to decide on.
 pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut SlaveStates, setup: &mut Setup) {
     let (integrals, overlaps) = pairing.integrals(part, states);
     let mut sums = SlaveSums::<NodeIntegrals>::new(states);

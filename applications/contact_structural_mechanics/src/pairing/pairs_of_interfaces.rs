@@ -182,9 +182,9 @@ impl Pairing {
 
     /// Candidates of this configuration together with the pairs that are there already; those without overlap go.
     ///
-    /// Lines behind each other by more than the limit of the setup are not taken for a pair: they may be the far sides of a thin body. Those
-    /// that are a pair stay one until the next search, however deep an iterate presses them in. Surfaces must not be farther
-    /// apart than that.
+    /// Lines behind each other by more than the limit of the setup are not taken for a pair: they may be the far sides of a thin body.
+    /// Existing pairs stay so until the next search, however deep an iterate presses them in. Surfaces must not be farther apart than
+    /// that.
     ///
     /// # Errors
     /// A condition for these shapes that is not registered.
@@ -357,7 +357,7 @@ impl Pairing {
         self.blocks.iter().flat_map(|block| block.pairs()).map(|pair| (pair.overlapping, pair.area)).collect()
     }
 
-    /// Goes back to what an integration had found.
+    /// Restores the overlaps of an earlier integration.
     pub(crate) fn set_overlaps(&mut self, overlaps: &[(bool, [f64; MOST_NODES])]) {
         let pairs = self.blocks.iter_mut().flat_map(|block| block.pairs_mut());
         pairs.zip(overlaps).for_each(|(pair, of_pair)| (pair.overlapping, pair.area) = *of_pair);
@@ -375,9 +375,8 @@ impl Pairing {
         self.blocks = blocks;
     }
 
-    /// Step start: keeps the operators against which slip is measured, and forgets the choices of the last step. Slivers count
-    /// where `slivers` holds and the nodes of their slave have other overlaps; a node that only slivers reach is beside the
-    /// master.
+    /// Step start: keeps the operators against which slip is measured, and forgets the choices of the last step. Slivers count where
+    /// `slivers` holds and the nodes of their slave have other overlaps; a node that only slivers reach is at the master's edge.
     pub(crate) fn begin_step(&mut self, part: &ModelPart, states: &SlaveStates, slivers: bool) {
         self.blocks.iter_mut().flat_map(|block| block.pairs_mut()).for_each(|pair| pair.choices = Choices::default());
         if slivers {
@@ -418,7 +417,7 @@ impl Pairing {
     /// Takes more pairs in, within a step.
     ///
     /// # Errors
-    /// Those of making blocks.
+    /// Errors of making blocks.
     pub(crate) fn add(&mut self, pairs: Vec<Pair>, setup: &Setup) -> Result<()> {
         let all = self.pairs().into_iter().chain(pairs).collect();
         self.graph += 1;
@@ -449,10 +448,10 @@ impl Pairing {
         }
     }
 
-    /// Takes up what it remembered of the same interfaces; `planes` are those of [`Pairing::find_normal_patches`].
+    /// Restores its state of the same interfaces; `planes` are those of [`Pairing::find_normal_patches`].
     ///
     /// # Errors
-    /// Those of making blocks.
+    /// Errors of making blocks.
     pub(crate) fn resume(&mut self, planes: &BTreeMap<u32, Fixed>, setup: &Setup, state: PairingState) -> Result<()> {
         set_sides(&mut self.interfaces, state.sides)?;
         check_pairs(&self.interfaces, state.pairs.iter().map(|pair| pair.key))?;

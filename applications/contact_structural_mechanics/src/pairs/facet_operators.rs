@@ -1,4 +1,4 @@
-//! D and M of two facets, for what does not need their derivatives: ties, constraints, mapping.
+//! D and M of two facets, without derivatives: for ties, constraints, mapping.
 
 use std::collections::BTreeSet;
 
@@ -105,9 +105,8 @@ pub fn nodal_normals<'a>(part: &'a ModelPart, facet: &'a Facet) -> impl Fn(usize
     move |local| std::array::from_fn(|c| column[3 * facet.nodes[local] as usize + c])
 }
 
-/// Pairs that overlap now, ascending, without those `known` already.
-/// Slivers are among them where all nodes of their slave have other overlaps; a node that only slivers reach is beside the
-/// master.
+/// Pairs that overlap now, ascending, without those `known` already. Slivers are among them where all nodes of their slave have other
+/// overlaps; a node that only slivers reach is at the master's edge.
 pub fn overlapping_pairs(
     part: &ModelPart,
     interfaces: &[Interface],
@@ -145,7 +144,7 @@ mod tests {
     use zelus_core::geometry::Shape;
     use zelus_core::model::Nodes;
 
-    /// Warped quadrilaterals and triangles of all sizes, turned about, slaves and masters by turns.
+    /// Warped quadrilaterals and triangles of all sizes, turned about, slaves and masters alternately.
     fn surfaces(count: usize) -> (ModelPart, Interface) {
         let mut state = 11_u64;
         let mut random = || {

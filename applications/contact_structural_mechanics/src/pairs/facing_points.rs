@@ -1,4 +1,4 @@
-//! The points at which two facets face each other, for what acts between them without multipliers.
+//! The points at which two facets face each other, for interactions without multipliers.
 
 use zelus_core::geometry::{FacetShape, interpolate};
 use zelus_core::model::ModelPart;

@@ -62,7 +62,7 @@ pub struct Formulation {
     pub decide: fn(&SlaveNumbers, SlipRule) -> Decision,
     /// Whether its penalty counts weighted gaps, and is a stress by length and area; otherwise gaps.
     pub weighted_gaps: bool,
-    /// Whether its surfaces give way by traction over penalty, the traction being a multiplier.
+    /// Whether contact is regularised: gap and slip have an elastic part, traction over penalty, the traction being a multiplier.
     pub compliant: bool,
     /// Whether an outer loop takes away by how much, by Uzawa's iteration.
     pub updated: bool,

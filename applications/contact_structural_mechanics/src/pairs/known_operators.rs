@@ -1,12 +1,12 @@
-//! Operators of a pair that were computed last, and the geometry they belong to.
+//! Cached operators of a pair, and the geometry they belong to.
 
 use zelus_core::geometry::Nodal;
 
 use crate::mortar::{Choices, Operators, Overlap, PairGeometry};
 
-/// Operators of a pair as it stood; they serve every question that is asked of the same state.
+/// Operators of a pair at the last evaluated geometry; they are reused while that stays the same.
 ///
-/// Numbers lie side by side in one piece: a model has many pairs.
+/// Numbers are contiguous in memory: a model has many pairs.
 #[derive(Debug, Clone)]
 pub(super) struct KnownOperators {
     /// Positions and normals, then D and M where there are any.

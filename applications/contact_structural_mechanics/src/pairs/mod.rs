@@ -1,4 +1,4 @@
-//! Contact pairs as blocks: what the search found, in the form the assembly takes.
+//! Contact pairs as blocks: the pairs of the search, in the form the assembly takes.
 
 mod contact_block;
 mod facet_operators;

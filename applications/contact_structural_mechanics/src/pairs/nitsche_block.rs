@@ -106,7 +106,7 @@ impl NitscheBlock {
         let size = unknowns.len();
         let places: Vec<usize> = unknowns.iter().map(|&(node, c)| self.pairs.first_row(at, node) + c).collect();
         let turns = self.pairs.parameters.normal_variation.knows_nodes();
-        // The rows of all local unknowns by the variables of the formula, and what works on changes of the tractions.
+        // The rows of all local unknowns by the variables of the formula, and the factors of the changes of the tractions.
         let mut rows = vec![0.0; width * all];
         let mut weights = Nodal::new(slaves, |_| [0.0; 3]);
         for first in (0..all).step_by(LANES) {

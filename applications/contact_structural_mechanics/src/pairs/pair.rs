@@ -8,7 +8,7 @@ use zelus_core::geometry::FacetShape;
 use crate::interface::{Interface, Roles};
 use crate::mortar::{Choices, MOST_NODES, Operators};
 
-/// Which facets of which interface.
+/// Key of a pair: its interface and facets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct PairKey {
     /// Position of the interface.
@@ -62,7 +62,7 @@ impl Previous {
     }
 }
 
-/// A pair with what it remembers between iterations and steps.
+/// A pair with its state between iterations and steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Pair {
     /// Its facets.

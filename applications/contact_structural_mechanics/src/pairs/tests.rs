@@ -407,8 +407,8 @@ fn cost_of_local_systems() {
     }
 }
 
-/// Tangential forces of the penalty method: they balance over both sides, oppose the slip, and are cut to the bound. A
-/// rigid motion of the pair, however large, makes no slip and takes the carried traction along.
+/// Tangential forces of the penalty method: they balance over both sides, oppose the slip, and are cut to the bound. A rigid-body
+/// motion of the pair, however large, makes no slip and rotates the history traction.
 #[test]
 fn penalty_friction_acts_through_the_mortar_operators() {
     let slave = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];

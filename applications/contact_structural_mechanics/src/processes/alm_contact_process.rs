@@ -96,7 +96,7 @@ enum SlidingDirection {
     /// In which it began to slide.
     #[default]
     Kept,
-    /// Of the tangential multiplier of each iterate.
+    /// Direction of the tangential multiplier of each iterate.
     OfMultiplier,
 }
 
@@ -314,7 +314,7 @@ fn explicit_penalty(settings: &Settings, request: &ProcessRequest<'_>) -> Result
     Ok(Some(ExplicitPenalty { most, exponent, gap }))
 }
 
-/// Refuses what the formulation cannot be used for.
+/// Refuses a use that the formulation is not made for.
 fn check_use(part: &ModelPart, formulation: &Formulation, settings: &Settings) -> Result<()> {
     check_analysis(settings, part)?;
     let key = "alternative_formulations.axisymmetric";

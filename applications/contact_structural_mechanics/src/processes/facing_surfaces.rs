@@ -34,7 +34,7 @@ pub struct FacingSurfaces {
 
 /// A slave facet with a master facet near it that does not face the same way.
 pub struct FacingPair<'a, 's> {
-    /// Which facets they are.
+    /// Facets of the pair.
     pub key: PairKey,
     /// Slave and master.
     pub facets: [&'a Facet; 2],

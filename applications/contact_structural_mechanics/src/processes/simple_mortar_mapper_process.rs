@@ -171,7 +171,7 @@ impl Mapper {
     }
 }
 
-/// Steps after which what neighbours add to each other is round-off: each takes it to a third or less.
+/// Steps after which the exchange between neighbours is round-off: each takes it to a third or less.
 const STEPS: usize = 40;
 
 impl Mapper {

@@ -9,7 +9,7 @@ const FORMULATIONS: FormulationStem = FormulationStem { name: "UzawaContact", pe
 
 register! { ProcessEntry "uzawa_contact_process",
     aliases: &["UzawaContactProcess"],
-    about: "contact by Uzawa's iteration: multipliers of surfaces that give way until an outer loop has taken that away",
+    about: "contact by Uzawa's iteration: regularised multipliers, and an outer loop that removes the remaining penetration",
     source: "eqs. 4.11, D.10",
     defaults: include_str!("../../../../configs/processes/uzawa_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/uzawa_contact_process.json"))],

@@ -84,7 +84,7 @@ fn combined<const C: usize>(shown: NodalCombination, of: impl Iterator<Item = ([
     }
 }
 
-/// Writes what the blocks of contact do to each node they touch; collective.
+/// Writes the forces of the blocks of contact on each node they touch; collective.
 ///
 /// # Errors
 /// A pair that cannot be computed with.

@@ -14,8 +14,8 @@ use crate::slave_nodes::{SlaveState, SlaveStates};
 /// Parts of the pairs of a deck by key: all of them, and those on the slave side.
 pub(crate) type PartsOfPairs<'a> = (&'a BTreeMap<String, Vec<String>>, &'a BTreeMap<String, Vec<String>>);
 
-/// The pairs of these interfaces; nodes in contact slide where there is no friction, and `heat` is what a slave node that slides
-/// has dissipated in the step; `slaves` are the slave nodes of each interface. No depth up to `least` counts. A slave node of several
+/// The pairs of these interfaces; nodes in contact slide where there is no friction, and `heat` is the dissipation of a sliding slave
+/// node in the step (energy); `slaves` are the slave nodes of each interface. No depth up to `least` counts. A slave node of several
 /// pairs counts in the first.
 pub(crate) fn pair_states(
     interfaces: &[Interface],

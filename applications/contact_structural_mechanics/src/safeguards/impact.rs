@@ -1,4 +1,4 @@
-//! Contact in motion with inertia: which nodes it is near to, and what energy a step makes of closing and opening.
+//! Contact in motion with inertia: nodes close to contact, and the energy error of closing and opening in a step.
 //!
 //! A trapezoidal step does the work ½ (p_n + p_{n+1}) (g̃_{n+1} − g̃_n) at a node, where contact does none: p g̃ = 0 at both ends.
 //! The rest, ½ (p_n g̃_{n+1} − p_{n+1} g̃_n), is that of a node which opens or closes within the step.
@@ -17,8 +17,8 @@ use crate::pairs::{Formulation, Multiplier};
 use crate::slave_nodes::{SlaveState, SlaveStates};
 use crate::variables::NODAL_H;
 
-/// Slave nodes within a mesh size of a master, or what they may move in two steps, and the nodes of those masters, ascending.
-/// Those `before` stay until they are twice as far.
+/// Slave nodes within a mesh size of a master, or within their motion of two steps, and the nodes of those masters, ascending. Nodes of
+/// `before` stay until they are twice as far.
 pub(crate) fn near_nodes(part: &ModelPart, pairing: &Pairing, states: &SlaveStates, before: &[u32]) -> Vec<u32> {
     let Some(velocity) = part.nodes.history.get(VELOCITY.name()) else { return Vec::new() };
     let nodes = pairing.nodes();

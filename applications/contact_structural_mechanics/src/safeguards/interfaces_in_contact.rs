@@ -1,4 +1,4 @@
-//! Which pairs of a deck have met in a stage, and what is said at its end of those that never did.
+//! Pairs of a deck that have been in contact in a stage, and the report at its end of those that never were.
 
 use std::collections::BTreeSet;
 

@@ -76,7 +76,7 @@ impl Summands<2> for FoundOverlap {
 /// must be integrated in the present configuration.
 ///
 /// # Errors
-/// Those of making blocks.
+/// Errors of making blocks.
 pub(crate) fn missed_pairs(
     part: &ModelPart,
     (pairing, states): (&Pairing, &SlaveStates),
@@ -96,7 +96,7 @@ pub(crate) fn missed_pairs(
         let (crossed, rest): (Vec<_>, Vec<_>) = found.into_iter().partition(|(_, has_crossed)| *has_crossed);
         [crossed, rest].map(|pairs| pairs.into_iter().map(|(pair, _)| pair).collect()).into()
     };
-    // All ranks know what is near; each makes pairs of what it evaluates.
+    // All ranks know the near facets; each makes the pairs that it evaluates.
     let is_own = |key: &PairKey| part.evaluates_pair(&pairing.slave(*key).nodes);
     let (crossed, rest) = pairs_of(&near.iter().copied().filter(is_own).collect::<Vec<_>>());
     let mut blocks = pairing.blocks_of(crossed, settings, parameters)?;

@@ -9,7 +9,7 @@ use crate::interface::{Facet, Interface, Roles};
 use crate::search::{Bounds, Tree, inside};
 use crate::variables::NODAL_H;
 
-/// Share of the depth that counts by which nodes may move until they are looked at again.
+/// Share of the largest depth by which nodes may move until they are checked again.
 const STILL: f64 = 0.5;
 
 /// Results of the last check of an interface.
@@ -17,7 +17,7 @@ const STILL: f64 = 0.5;
 pub(crate) struct PenetrationCheck {
     /// Way of the farthest node since the last look that found nothing (length); `None` before the first.
     moved: Option<f64>,
-    /// Whether the last look found what a shorter step may not have.
+    /// Whether the last check found a penetration that a shorter step may avoid.
     pub depends_on_step: bool,
 }
 
@@ -92,7 +92,7 @@ fn buried(part: &ModelPart, idle: &[&Interface], most: f64) -> Option<String> {
     ))
 }
 
-/// Of nodes, ascending, the unit way to the centres of their elements. Collective.
+/// Unit vectors from nodes, ascending, to the centres of their elements. Collective.
 fn inward(part: &ModelPart, nodes: &[u32]) -> Vec<[f64; 3]> {
     let mut sums = vec![0.0; 3 * nodes.len()];
     for element in (0..part.elements.len() as u32).filter(|&at| part.elements.kinds[at as usize].cell.is_some()) {

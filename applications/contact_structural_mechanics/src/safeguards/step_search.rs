@@ -33,7 +33,7 @@ impl StepSearch {
     /// Facets that should be pairs now and are not; `searched` says whether the step began with a search.
     ///
     /// # Errors
-    /// Those of making blocks.
+    /// Errors of making blocks.
     fn missed_pairs(
         &self,
         part: &ModelPart,
@@ -55,7 +55,7 @@ impl StepSearch {
     /// In the first iterations: pairs that the motion has made, so that the iteration need not be repeated for them at its end.
     ///
     /// # Errors
-    /// Those of making blocks.
+    /// Errors of making blocks.
     pub(crate) fn on_the_way(
         &self,
         part: &ModelPart,
@@ -67,10 +67,10 @@ impl StepSearch {
         if looks { Ok(self.missed_pairs(part, contact, setup, searched)?.missed) } else { Ok(Vec::new()) }
     }
 
-    /// In a converged state: pairs that the motion has made, and what the step does about them.
+    /// In a converged state: pairs from the present positions, and the consequence for the step.
     ///
     /// # Errors
-    /// Those of making blocks.
+    /// Errors of making blocks.
     pub(crate) fn in_converged_state(
         &mut self,
         part: &ModelPart,
@@ -84,8 +84,10 @@ impl StepSearch {
             return Ok((late.missed, Outer::Done));
         }
         let why = match late.nodes.iter().take(6).map(|&n| part.nodes.ids[n as usize].to_string()).collect::<Vec<_>>() {
-            ids if ids.is_empty() => format!("{} pairs more are found where the nodes have come to", late.missed.len()),
-            ids => format!("nodes {} came through facets they had no pair with", ids.join(" ")),
+            ids if ids.is_empty() => {
+                format!("{} more facet pairs are found at the present positions", late.missed.len())
+            }
+            ids => format!("nodes {} have penetrated facets that were not paired with theirs", ids.join(" ")),
         };
         if self.searches < MOST_SEARCHES {
             self.searches += 1;

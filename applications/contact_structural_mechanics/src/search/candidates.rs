@@ -31,7 +31,7 @@ pub enum GapCheck {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SearchDistance {
-    /// Between the boxes around them: what may overlap is a pair, whatever its size.
+    /// Between the boxes around them: facets that may overlap are a pair, whatever its size.
     BetweenFacets,
     /// Between their centres: masters much larger than the slave may be left out.
     BetweenCentres,
@@ -40,13 +40,13 @@ pub enum SearchDistance {
     BeyondFirst,
 }
 
-/// Which pairs that bodies come to within a step are taken in before it ends.
+/// Pairs that arise within a step and are added before it ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WithinStep {
     /// All that face nodes in contact or show nodes to be in a master.
     Facing,
-    /// Those of nodes that are in a master by more than the gap at which nodes start in contact.
+    /// Pairs of nodes that are in a master by more than the gap at which nodes start in contact.
     Lost,
 }
 
@@ -87,7 +87,7 @@ pub fn candidates(part: &ModelPart, interface: &Interface, settings: &SearchSett
     let of_role = |role: Roles| -> Vec<u32> {
         (0..interface.facets.len() as u32).filter(|&f| interface.facets[f as usize].role == role).collect()
     };
-    // Moved bodies and nodes that touch are judged by what is near, not by what overlaps now.
+    // Moved bodies and nodes that touch are judged by near facets, not by overlapping ones.
     let overlapping = !settings.dynamic && settings.check != GapCheck::DirectCheck;
     among(part, interface, &of_role(Roles::Slave), &of_role(Roles::Master), settings, overlapping)
 }

@@ -1,4 +1,4 @@
-//! Which points lie inside bodies.
+//! Points that lie inside bodies.
 
 use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::model::ModelPart;

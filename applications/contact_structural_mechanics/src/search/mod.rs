@@ -1,4 +1,4 @@
-//! Which facets may touch: a bounding-volume tree over the masters, then a filter on each pair.
+//! Search for facets that may touch: a bounding-volume tree over the masters, then a filter on each pair.
 
 mod along_normals;
 mod candidates;

@@ -11,6 +11,7 @@ pub fn warn_of_reach(lost: usize) -> Diagnostic {
 
 /// The warning that searches within a step went on to find pairs.
 pub fn warn_of_late_pairs(count: usize, searches: usize) -> Diagnostic {
-    let fact = format!("after {searches} searches within the step {count} pairs more are found; they are left out");
+    let fact =
+        format!("after {searches} searches within the step {count} more facet pairs are found; they are left out");
     Diagnostic::warning("late-contact", fact).remedy("shorten the step")
 }

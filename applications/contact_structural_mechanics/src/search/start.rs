@@ -36,7 +36,7 @@ struct StartingNode {
 /// An interface before the first step.
 #[derive(Default)]
 pub struct Settled {
-    /// What was moved, or is wrong.
+    /// Message of nodes that were moved, or of a mistake.
     pub message: Option<Diagnostic>,
     /// Whether slave nodes lie inside the master by more than round-off, so that contact loads the bodies by itself.
     pub overlaps: bool,

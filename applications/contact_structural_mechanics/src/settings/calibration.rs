@@ -1,4 +1,4 @@
-//! Penalty, scale factor and reach of the search, from the bodies behind the interfaces and what the deck says.
+//! Penalty, scale factor and search radius, from the bodies behind the interfaces and the deck.
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
@@ -21,8 +21,8 @@ pub(crate) fn limit(settings: &ContactSettings, threshold: f64) -> f64 {
     if settings.search.check == GapCheck::CheckMapping { threshold } else { FAR }
 }
 
-/// Writes penalty and scale factor into the part; gives the gap below which nodes and facets count as near, before factors
-/// (length), and what pairs share, with what of `before` does not come from the bodies.
+/// Writes penalty and scale factor into the part; gives the gap below which nodes and facets count as near, before factors (length),
+/// and the shared parameters of pairs, with those of `before` that do not come from the bodies.
 ///
 /// # Errors
 /// A coefficient of friction below zero.
@@ -46,7 +46,7 @@ pub(crate) fn calibrate(
     if settings.weighted_penalty && settings.manual.is_none() {
         messages.extend(unit.warning());
     }
-    // Without factors, which a deck may have chosen for what else they do.
+    // Without factors, which a deck may have chosen for their other effects.
     let of_bodies = alm_parameters(part, interfaces, 1.0, 1.0).penalty;
     let of_bodies = if of_bodies > 0.0 { of_bodies } else { chosen.penalty };
     // Kratos finds no scale factor where no side is named, and falls back to 1; multipliers would differ otherwise.

@@ -32,7 +32,7 @@ pub struct ContactSettings {
     pub augmentation: Augmentation,
     /// Nitsche's method, of formulations whose tractions are those of bodies.
     pub nitsche: Nitsche,
-    /// Which facets are looked at.
+    /// Settings of the search for pairs.
     pub search: SearchSettings,
     /// Gap, in mesh sizes, below which a node starts active.
     pub active_check_factor: f64,
@@ -50,11 +50,11 @@ pub struct ContactSettings {
     pub penalty_factor: f64,
     /// Whether penalties act pair by pair on weighted gaps.
     pub weighted_penalty: bool,
-    /// Least penalty: what takes its place when the estimate is zero.
+    /// Least penalty: it takes the place of an estimate of zero.
     pub least_penalty: f64,
     /// Whether the scale factor is used; otherwise it is 1.
     pub use_scale_factor: bool,
-    /// Whether multipliers are no part of what a deck sees, so that their scale is that of the bodies.
+    /// Whether multipliers are hidden from the deck, so that their scale is that of the bodies.
     pub own_scale: bool,
     /// Ratio of tangential and normal penalty.
     pub tangent_factor: f64,

@@ -24,7 +24,7 @@ pub struct SlaveKinematics {
     pub isolated: bool,
     /// Unit normal out of the slave body.
     pub normal: [f64; 3],
-    /// Whether that is the normal of what it meets, and does not turn with its own facets: nodes on sharp edges.
+    /// Whether that is the normal of the opposite master, and does not rotate with its own facets: nodes on sharp edges.
     pub normal_of_master: bool,
     /// Pairs that overlap at it.
     pub pairs: u32,
@@ -87,7 +87,7 @@ pub struct SlaveParameters {
 pub struct Accepted {
     /// Weighted gap.
     pub weighted_gap: f64,
-    /// Carried traction.
+    /// History traction.
     pub carried: [f64; 3],
 }
 

@@ -229,7 +229,7 @@ impl SlaveStates {
         self.iter().filter(|(_, state)| state.law.active).count()
     }
 
-    /// Step start: what was accepted last is what the step compares with.
+    /// Step start: the last accepted state becomes the reference of the step.
     pub fn begin_step(&mut self) {
         for state in &mut self.states {
             state.last = Accepted { weighted_gap: state.kinematics.weighted_gap, carried: state.law.carried };
@@ -262,7 +262,7 @@ impl SlaveStates {
         }
     }
 
-    /// Writes flags and columns of the mesh nodes: those of their slave node, or what several add up to.
+    /// Writes flags and columns of the mesh nodes: those of their slave node, or the sum over several.
     pub fn export(&self, nodes: &mut Nodes) {
         for own in self.table.nodes.chunk_by(|a, b| a == b).scan(0, next_range) {
             let at = self.table.nodes[own.start] as usize;

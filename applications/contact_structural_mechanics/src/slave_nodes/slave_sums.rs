@@ -12,7 +12,7 @@ pub(crate) trait Summands<const C: usize>: Copy + Default {
     /// The numbers, one after the other.
     fn numbers(&self) -> [f64; C];
 
-    /// Those that [`Summands::numbers`] gives.
+    /// Sums of the numbers that [`Summands::numbers`] gives.
     fn of(numbers: [f64; C]) -> Self;
 }
 
@@ -30,7 +30,7 @@ impl Summands<1> for f64 {
 pub(crate) struct SlaveSums<T>(Vec<T>);
 
 impl<T: Copy + Default> SlaveSums<T> {
-    /// Of all slave nodes.
+    /// Zero sums of all slave nodes.
     pub(crate) fn new(states: &SlaveStates) -> Self {
         Self(vec![T::default(); states.len()])
     }

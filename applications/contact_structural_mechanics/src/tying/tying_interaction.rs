@@ -41,7 +41,7 @@ pub struct TyingSettings {
     pub tied: Vec<ScalarVariable>,
     /// Times in which the tie holds.
     pub interval: Interval,
-    /// Which facets are looked at.
+    /// Settings of the search for pairs.
     pub search: SearchSettings,
     /// Steps between searches.
     pub database_step_update: usize,

@@ -52,7 +52,7 @@ pub struct Face<const EXCHANGES: bool, const RING: bool, const DIM: usize> {
 }
 
 impl<const EXCHANGES: bool, const RING: bool, const DIM: usize> Face<EXCHANGES, RING, DIM> {
-    /// What exchanges heat with the face: by its properties, and by its data.
+    /// Surroundings that exchange heat with the face: by its properties, and by its data.
     fn surroundings(properties: &Properties, view: &StepView<'_>, index: u32) -> [Surroundings; 2] {
         if !EXCHANGES {
             return [Surroundings::default(); 2];

@@ -1,4 +1,4 @@
-//! Conditions: what passes through the boundary.
+//! Conditions: heat through the boundary.
 
 mod face;
 

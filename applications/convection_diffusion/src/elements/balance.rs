@@ -1,4 +1,4 @@
-//! The balance of heat at a point: what the shape functions and their gradients are multiplied by.
+//! The balance of heat at a point: the factors of the shape functions and of their gradients.
 //!
 //! ρc (∂T/∂t + v·∇T) = ∇·(k ∇T) + Q is weighted by N_i + τ v·∇N_i (SUPG): the residual is −∫ (N_i a + ∇N_i·b) with
 //! a = ρc (T − T₀)/Δt + ρc v·(θ ∇T + (1 − θ) ∇T₀) − Q and b = k (θ ∇T + (1 − θ) ∇T₀) + τ v a, where
@@ -15,7 +15,7 @@ use super::contribution::Pointwise;
 use super::marks::{ABOUT_Y, AT_REST, LINEAR};
 use crate::coefficient::Local;
 
-/// What the whole step shares.
+/// Data of the whole step.
 #[derive(Debug, Clone, Copy)]
 pub struct Step {
     /// Its length in time; infinite where heat is at rest.
@@ -54,7 +54,7 @@ impl Step {
     }
 }
 
-/// What is known of a point before its temperature.
+/// Data of a point that do not depend on its temperature.
 #[derive(Clone, Copy)]
 pub struct Point<'a, const NODES: usize> {
     /// Step, with the weights of its ends.
@@ -90,13 +90,13 @@ pub fn radial(info: &ProcessInfo) -> usize {
     if info.has(ABOUT_Y) { 0 } else { 1 }
 }
 
-/// What volumes are multiplied by: the way round the axis, where there is one.
+/// Factor of volumes: the circumference around the axis, 2π r, where there is an axis.
 pub(super) fn round(radius: Option<f64>) -> f64 {
     radius.map_or(1.0, |radius| 2.0 * PI * radius)
 }
 
 impl<const NODES: usize> Point<'_, NODES> {
-    /// What volumes are multiplied by: the way round the axis.
+    /// Factor of volumes: the circumference around the axis.
     pub fn round(&self) -> f64 {
         round(self.radius)
     }
@@ -136,7 +136,7 @@ impl<const NODES: usize> Pointwise for Point<'_, NODES> {
             return (a, b);
         }
         let tau = c / inverse;
-        // What conduction towards the axis adds to the strong form.
+        // Term of the strong form from conduction towards the axis.
         let strong = self.radius.map_or(a, |radius| a - b[self.radial] / radius);
         (0..3).for_each(|i| b[i] += tau * strong * velocity[i]);
         if step.cross_wind > 0.0 {

@@ -1,8 +1,8 @@
-//! What a point of an element gives to residual and tangent, from its balance.
+//! Contribution of a point of an element to residual and tangent, from its balance.
 
 use zelus_core::scalar::{Dual, Real};
 
-/// The balance at a point: what the shape functions and their gradients are multiplied by.
+/// The balance at a point: the factors of the shape functions and of their gradients.
 pub(super) trait Pointwise {
     /// The factors a of the shape functions and b of their gradients at a temperature and gradient.
     fn balance<R: Real>(&self, temperature: R, gradient: [R; 3]) -> (R, [R; 3]);

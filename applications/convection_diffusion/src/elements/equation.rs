@@ -19,11 +19,11 @@ use crate::coefficient::Local;
 use crate::columns::{Columns, nodal, velocities};
 use crate::material::Material;
 
-/// Which terms of the balance a kind of element has.
+/// Terms of the balance that a kind of element has.
 pub trait Terms: Send + Sync + 'static {
     /// Storage and convection.
     const TRANSIENT: bool;
-    /// The value at the beginning of the step is that which was carried along, ends weigh alike.
+    /// The value at the beginning of the step is the advected one; both ends of the step have weight 1/2.
     const CARRIED: bool = false;
     /// A body of revolution about the x axis, beside a structure about the y axis.
     const AXISYMMETRIC: bool = false;

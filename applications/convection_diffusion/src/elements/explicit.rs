@@ -1,9 +1,9 @@
 //! The kernel of explicit heat: the rate at which heat comes to a node, with subscales.
 //!
-//! R_i = ∫ N_i (Q − ρc v·∇T) − k ∇N_i·∇T + ρc (v·∇N_i) s. The subscale s is what the mesh does not resolve of T:
-//! s = τ (r + ρc π), r = Q − ρc (∂T/∂t + v·∇T), 1/τ = ρc (β/Δt + 2|v|/h) + 4k/h²; π is zero, or minus the projection of r/ρc
-//! onto the mesh (orthogonal subscales). Dynamic subscales go on in time: β is 1, s = τ (r + ρc (π + s₀/Δt)), and ∫ N_i ρc (s − s₀)/Δt is
-//! taken off R. ∂T/∂t is the mean rate since the beginning of the step. Codina, Principe and Avila (2011).
+//! R_i = ∫ N_i (Q − ρc v·∇T) − k ∇N_i·∇T + ρc (v·∇N_i) s. The subscale s is the part of T that the mesh does not resolve: s = τ (r + ρc
+//! π), r = Q − ρc (∂T/∂t + v·∇T), 1/τ = ρc (β/Δt + 2|v|/h) + 4k/h²; π is zero, or minus the projection of r/ρc onto the mesh
+//! (orthogonal subscales). Dynamic subscales go on in time: β is 1, s = τ (r + ρc (π + s₀/Δt)), and ∫ N_i ρc (s − s₀)/Δt is taken off
+//! R. ∂T/∂t is the mean rate since the beginning of the step. Codina, Principe and Avila (2011).
 
 use std::marker::PhantomData;
 
@@ -39,7 +39,7 @@ pub struct Explicit<T, const NODES: usize, const DIM: usize> {
     subscales: PhantomData<fn() -> T>,
 }
 
-/// What is known of a point before its temperature.
+/// Data of a point that do not depend on its temperature.
 struct Point {
     /// k.
     conductivity: f64,
@@ -62,7 +62,7 @@ struct Point {
 }
 
 impl Point {
-    /// The mean rate since the beginning of the step, and what the flow carries.
+    /// The mean rate since the beginning of the step, and the convected heat.
     fn strong<R: Real>(&self, temperature: R, gradient: [R; 3]) -> (R, R) {
         let rate = if self.since > 0.0 { (temperature - self.old) / self.since } else { R::zero() };
         (rate, along(self.velocity, gradient))

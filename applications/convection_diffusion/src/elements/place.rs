@@ -1,4 +1,4 @@
-//! What follows from the shape of an element: its Gauss rule, and its size along a flow.
+//! Geometry of an element: its Gauss rule, and its size along a flow.
 
 use nalgebra::{Matrix3, Vector3};
 use zelus_core::geometry::mapping::tangents;

@@ -21,7 +21,7 @@ impl Terms for Laplacian {
     const TRANSIENT: bool = false;
 }
 
-/// Storage and conduction after the temperature has been carried along.
+/// Storage and conduction after advection of the temperature.
 pub struct Diffusion;
 
 impl Terms for Diffusion {
@@ -145,7 +145,7 @@ on_shapes! { all, balance; "LaplacianElement", Laplacian,
 "∇·(k ∇T) + Q = 0" }
 
 on_shapes! { all, balance; "EulerianDiffusion", Diffusion,
-"the second half of a semi-implicit step: conduction from PROJECTED_SCALAR1, which was carried along",
+"the second half of a semi-implicit step: conduction from PROJECTED_SCALAR1, the advected temperature",
 "ρc (T − T*)/Δt = ∇·(k ∇(T + T*)/2) + Q" }
 
 on_shapes! { plane, balance; "AxisymmetricEulerianConvectionDiffusion", Revolution,

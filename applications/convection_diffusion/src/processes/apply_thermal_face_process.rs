@@ -55,7 +55,7 @@ impl ApplyThermalFace {
 }
 
 impl Process for ApplyThermalFace {
-    /// What the process says of surroundings takes the place of what materials say.
+    /// Surroundings that the process gives replace those of materials.
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root_mut(&self.target.path)?;
         let mut own: Vec<[usize; 2]> = Vec::new();

@@ -34,7 +34,7 @@ fn unfold(deck: &mut Node) -> Result<()> {
     let Some(Node { value: Value::Object(members), .. }) = top.get_mut("solver_settings") else { return Ok(()) };
     let coupling = members.remove(way::SETTINGS);
     let (Some(mut own), Some(of_heat)) = (members.remove(STRUCTURE), members.remove(EXTENSION)) else { return Ok(()) };
-    // Other programs have defaults for it, which are laid under what is there.
+    // Other programs have defaults for it, which apply below the present settings.
     let mut nothing = of_heat.node.clone();
     nothing.value = Value::Object(Object::default());
     own.node.set_path(way::SETTINGS, coupling.map_or(nothing, |coupling| coupling.node))?;
@@ -68,7 +68,7 @@ fn rename(node: &mut Node, from: &str, to: &str) {
 
 register! { SolverEntry "thermo_mechanically_coupled",
     aliases: &["ThermoMechanicallyCoupled"],
-    about: "heat and mechanics on one mesh: in each step by turns, heat first, until the temperatures stay",
+    about: "heat and mechanics on one mesh, staggered in each step, heat first, until the temperatures stay",
     defaults: include_str!("../../../../configs/solvers/thermo_mechanically_coupled.json"),
     build: SolverDefinition {
         scheme: |_| Ok(SCHEME.to_owned()),

@@ -1,5 +1,6 @@
-//! Back and forth error compensation and correction: a value is carried along paths, back again, and what that misses is halved and
-//! taken off before it is carried once more. Second order in time and space, stable for steps of any length.
+//! Back and forth error compensation and correction (BFECC) of semi-Lagrangian advection: a value is advected forward, then backward;
+//! half the error of the round trip is subtracted before it is advected once more. Second order in time and space, stable for steps of
+//! any length.
 //!
 //! Dupont and Liu, J. Comput. Phys. 190 (2003). A path goes through the velocities at both ends of the step, linear in time; it begins
 //! with that of its node, and each further part of it takes the velocity of the place it has come to, at the time it has come to.

@@ -35,7 +35,7 @@ impl<'a> Locator<'a> {
         let mean = boxes.iter().map(extent).sum::<f64>() / boxes.len().max(1) as f64;
         locator.size = if mean > 0.0 { mean } else { 1.0 };
         for (element, [low, high]) in elements.zip(&boxes) {
-            // What lies on the side of a cell belongs to both.
+            // A point on the side of a cell belongs to both cells.
             let margin = SLACK * locator.size;
             let (low, high) = (locator.cell(low.map(|x| x - margin)), locator.cell(high.map(|x| x + margin)));
             for i in low[0]..=high[0] {

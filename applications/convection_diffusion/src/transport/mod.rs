@@ -1,4 +1,4 @@
-//! Values carried along with a velocity, along the paths of points.
+//! Semi-Lagrangian advection: values move with a velocity along the paths of points.
 
 mod back_and_forth;
 mod locator;

@@ -5,7 +5,7 @@ use zelus_core::model::ModelPart;
 
 use super::mesh::Mesh;
 
-/// Brings together what ranks have of a part. Nodes count by their place in the whole mesh.
+/// Gathers the shares of ranks to a whole part. Nodes count by their place in the whole mesh.
 pub struct Whole {
     /// Nodes that this rank owns.
     pub own: Vec<u32>,
@@ -16,7 +16,7 @@ pub struct Whole {
 }
 
 impl Whole {
-    /// Of a part, whose nodes may move afterwards. Collective.
+    /// Whole of a part, whose nodes may move afterwards. Collective.
     pub fn of(part: &ModelPart) -> Self {
         let own: Vec<u32> =
             (0..part.nodes.len()).filter(|&node| part.owns_node(node)).map(|node| node as u32).collect();
@@ -29,7 +29,7 @@ impl Whole {
         part.share.as_ref().map_or(node, |share| share.places[node as usize]) as usize
     }
 
-    /// A field on the whole mesh, from what it is at the nodes of each rank's own, in their order. Collective.
+    /// A field on the whole mesh, from its values at the own nodes of each rank, in their order. Collective.
     pub fn field<const C: usize>(&self, part: &ModelPart, own: &[[f64; C]]) -> Vec<[f64; C]> {
         let all = part.ranks.gather_numbers(own.as_flattened());
         let mut field = vec![[0.0; C]; self.places.iter().map(Vec::len).sum()];

@@ -1,4 +1,4 @@
-//! What load conditions share: the kernel of distributed loads, values from the condition and its nodes, rows, thickness.
+//! Code that load conditions share: the kernel of distributed loads, values from the condition and its nodes, rows, thickness.
 
 use std::marker::PhantomData;
 
@@ -9,7 +9,7 @@ use zelus_core::model::Variable;
 
 use crate::variables::{DISPLACEMENT, NEGATIVE_FACE_PRESSURE, POSITIVE_FACE_PRESSURE, PRESSURE};
 
-/// A load spread over a line or a surface: what is integrated, at all Gauss points of one condition.
+/// A load spread over a line or a surface: its integrand at all Gauss points of one condition.
 pub trait DistributedLoad<const NODES: usize, const SIZE: usize>: 'static {
     /// Dimension of the cell: 1 a line, 2 a surface.
     const CELL: usize;

@@ -1,5 +1,4 @@
-//! Elements, conditions, laws, schemes and solvers of the reference program that are known and not there, and what to
-//! use instead.
+//! Elements, conditions, laws, schemes and solvers of the reference program that are known and not there, and their replacements.
 
 use zelus_core::analysis::SolverEntry;
 use zelus_core::entities::{ConditionEntry, ElementEntry};

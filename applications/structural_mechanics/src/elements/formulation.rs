@@ -1,4 +1,4 @@
-//! What tells one solid formulation from another.
+//! The differences between solid formulations.
 
 use crate::laws::StressMeasure;
 

@@ -1,4 +1,4 @@
-//! What an element takes from its properties, read once.
+//! Material of an element, read once from its properties.
 
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
 use zelus_core::entities::{BlockRequest, StepView};
@@ -124,7 +124,7 @@ impl<const S: usize> Material<S> {
         ))
     }
 
-    /// What the law remembers of Gauss point `g`, from what it remembers of all points of an element.
+    /// History of the law at Gauss point `g`, from the history of all points of an element.
     pub(super) fn remembered<'a>(&self, g: usize, state: &'a [f64]) -> &'a [f64] {
         let size = self.law.history();
         &state[g * size..(g + 1) * size]

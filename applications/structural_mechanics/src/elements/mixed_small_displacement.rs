@@ -117,7 +117,7 @@ impl VolumetricForm for MixedSmallDisplacement {
             d[s][..DIM].iter().sum::<f64>() / DIM as f64 - normal
         });
         for j in 0..NODES {
-            // σ of a displacement of node j in each direction: D B_j less what θ takes away
+            // σ of a displacement of node j in each direction: D B_j less the part of θ
             let mut moved = [[0.0; DIM]; S];
             for s in 0..S {
                 for a in 0..DIM {

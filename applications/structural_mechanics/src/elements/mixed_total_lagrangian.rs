@@ -6,12 +6,12 @@
 //! displacements: ∫ N_i b − F S(F̄) ∇N_i + κ τ_θ (θ − J + 1) h_i dV,
 //! volumetric strain: κ ∫ (1 − τ_θ) N_i (θ − J + 1) + τ_u h_i · (b + κ Σ θ_j h_j) dV.
 //!
-//! The terms with τ are algebraic subscales, so that displacements and strain can have the same shape functions: that
-//! of the displacements is τ_u times what is out of balance, where the pressure κ θ gives the force κ J F⁻ᵀ ∇θ (Piola's
-//! identity), and that of θ is τ_θ (J − 1 − θ). τ_u = l²/μ with l the edge of a cube of the element's volume, τ_θ =
-//! 0.1 μ/(μ + κ), κ and μ those of the law's matrix without strain. (In the reference program they are those of the
-//! present one, l is the present edge, and D : C/d (1 + θ)^{2/d − 1} J^{−2/d}, the derivative of S by θ, stands for κ J C⁻¹ in
-//! both terms, without F in the first; for small strains this is the same.)
+//! The terms with τ are algebraic subscales, so that displacements and strain can have the same shape functions: that of the
+//! displacements is τ_u times the out-of-balance force, where the pressure κ θ gives the force κ J F⁻ᵀ ∇θ (Piola's identity), and that
+//! of θ is τ_θ (J − 1 − θ). τ_u = l²/μ with l the edge of a cube of the element's volume, τ_θ = 0.1 μ/(μ + κ), κ and μ those of the
+//! law's matrix without strain. (In the reference program they are those of the present one, l is the present edge, and D : C/d (1 +
+//! θ)^{2/d − 1} J^{−2/d}, the derivative of S by θ, stands for κ J C⁻¹ in both terms, without F in the first; for small strains this is
+//! the same.)
 
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::Want;
@@ -104,7 +104,7 @@ impl VolumetricForm for MixedTotalLagrangian {
         let wanted = if lhs.is_empty() { None } else { Some(&mut d) };
         let s = stress_tensor(&matter.law.stress(state, StressMeasure::Pk2, wanted));
         let excess = theta - j + 1.0;
-        // S ∇N_i, and what is out of balance but for the body force: κ Σ θ_i h_i
+        // S ∇N_i, and the out-of-balance force without the body force: κ Σ θ_i h_i
         let pulled =
             at.dn.map(|dn| -> [f64; DIM] { std::array::from_fn(|a| (0..DIM).map(|b| s[(a, b)] * dn[b]).sum()) });
         let mut load = matter.body;

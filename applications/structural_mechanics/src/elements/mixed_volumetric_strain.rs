@@ -1,9 +1,9 @@
-//! Elements with the volumetric strain as an unknown of the nodes, against volumetric locking: what they share.
+//! Elements with the volumetric strain as an unknown of the nodes, against volumetric locking: their common parts.
 //!
-//! The unknowns of a node are its displacements and θ_i, a change of volume per volume. A [`VolumetricForm`] says which
-//! strain they give the law at a Gauss point, and what the point adds to forces and stiffness. Mass is that of the
-//! displacements. Damping that goes with the stiffness acts on velocities, and θ has none: θ is then that of u + β v, so
-//! that its stress has the damping of volume in it.
+//! The unknowns of a node are its displacements and θ_i, a change of volume per volume. A [`VolumetricForm`] gives the strain for the
+//! law at a Gauss point, and the contribution of the point to forces and stiffness. Mass is that of the displacements. Damping that
+//! goes with the stiffness acts on velocities, and θ has none: θ is then that of u + β v, so that its stress has the damping of volume
+//! in it.
 
 use std::marker::PhantomData;
 
@@ -37,7 +37,7 @@ pub trait VolumetricForm: Send + Sync + 'static {
         history: &'a [f64],
     ) -> Result<StrainState<'a, S>, String>;
 
-    /// Adds what a Gauss point gives.
+    /// Adds the contribution of a Gauss point.
     fn add<const NODES: usize, const DIM: usize, const S: usize, const SIZE: usize>(
         at: &Place<'_, NODES, DIM>,
         values: &Values<NODES>,
@@ -69,7 +69,7 @@ pub struct Values<const NODES: usize> {
     pub(super) theta: [f64; NODES],
 }
 
-/// What a Gauss point is made of.
+/// Material data at a Gauss point.
 pub struct Matter<'a, const DIM: usize, const S: usize> {
     /// The law.
     pub(super) law: &'a dyn ConstitutiveLaw<S>,

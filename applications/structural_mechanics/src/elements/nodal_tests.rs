@@ -20,7 +20,7 @@ fn a_mass_on_a_spring_hangs_where_it_must() {
     assert_eq!([k[0], k[4], k[8]], [10.0, 20.0, 40.0]);
     assert_eq!(single.mass(true).iter().sum::<f64>(), 6.0);
     assert_eq!(single.damping()[4], 3.0);
-    // what does not depend on displacements: weight, and the spring's rest
+    // loads that do not depend on displacements: weight, and the initial length of the spring
     assert_eq!(single.try_system(Want::External).unwrap().1, [5.0, 0.0, -19.62]);
 }
 

@@ -1,9 +1,9 @@
 //! The solid element: internal forces ∫ Bᵀ s dV, tangent ∫ (Bᵀ D B + ∇N·s·∇N 1) dV, body forces, mass.
 //!
-//! `dn` are gradients of the shape functions on the formulation's configuration, s the stress that works there. The
-//! rows of B follow the Voigt order of [`crate::tensor`]; total Lagrangian B holds F, the others do not. With mean
-//! dilatation (B-bar, Hughes 1980) θ = div u gives way to its mean over the element, θ̄ = Σ (∫ ∂N_i dV / V) · u_i:
-//! ε̄ = ε + (θ̄ − θ)/3 1, in the plane with its component across. The element remembers what its law does at each point.
+//! `dn` are gradients of the shape functions on the formulation's configuration, s the stress that works there. The rows of B follow
+//! the Voigt order of [`crate::tensor`]; total Lagrangian B holds F, the others do not. With mean dilatation (B-bar, Hughes 1980) θ =
+//! div u is replaced by its mean over the element, θ̄ = Σ (∫ ∂N_i dV / V) · u_i: ε̄ = ε + (θ̄ − θ)/3 1, in the plane with its component
+//! across. The element keeps the history of its law at each point.
 
 mod kinematics;
 mod traction;

@@ -142,7 +142,7 @@ fn forces_and_moments_balance() {
     }
 }
 
-/// A constant stress gives the nodal forces f_i = −∮ N_i σ n dA; what neighbours share then cancels: the patch test.
+/// A constant stress gives the nodal forces f_i = −∮ N_i σ n dA; contributions of neighbours then cancel: the patch test.
 #[test]
 fn constant_stress_gives_the_tractions_of_the_faces() {
     let mut random = Random(19);

@@ -51,7 +51,7 @@ impl<const DIM: usize, const LINEAR: bool> Truss<DIM, LINEAR> {
 }
 
 impl<const DIM: usize, const LINEAR: bool> Truss<DIM, LINEAR> {
-    /// Stress at a strain, its derivative, and what is remembered after a step that ends so.
+    /// Stress at a strain, its derivative, and the history after a step that ends so.
     fn response(
         &self,
         strain: f64,

@@ -7,8 +7,8 @@ use super::expansion::Expansion;
 
 /// Stress along a bar, positive in tension.
 pub trait BarLaw: Send + Sync {
-    /// Stress at a strain where `prestress` acts without strain, its derivative by the strain, and what is remembered after
-    /// a step that ends so. What is remembered is 0 before the first step.
+    /// Stress at a strain where `prestress` acts without strain, its derivative by the strain, and the history after a step that ends
+    /// so. The history is 0 before the first step.
     fn response(&self, strain: f64, prestress: f64, remembered: [f64; 2]) -> (f64, f64, [f64; 2]);
 
     /// Whether the stress is a constant times the strain.

@@ -1,9 +1,9 @@
 //! Isotropic damage under small strain: σ = (1 − d) σ̄, σ̄ = D(T) (ε − α(T) (T − T₀) 1).
 //!
-//! With the equivalent stress q of σ̄, κ is the largest q/σ_y(T) so far, from 1 on. Softening over a band of the width l, the element's,
-//! takes the fracture energy G by area of the crack, whatever the mesh: exponential, d = 1 − exp(A (1 − κ))/κ with
-//! 1/A = G E/(l σ_y²) − ½; linear, d = (1 − 1/κ)/(1 − l σ_y²/(2 E G)). Bands wider than 2 E G/σ_y² would have to snap back and
-//! are refused. d does not fall and stays below 1, so that what has broken holds its nodes in place.
+//! With the equivalent stress q of σ̄, κ is the largest q/σ_y(T) so far, from 1 on. Softening over a band of the width l, the
+//! element's, takes the fracture energy G by area of the crack, whatever the mesh: exponential, d = 1 − exp(A (1 − κ))/κ with 1/A = G
+//! E/(l σ_y²) − ½; linear, d = (1 − 1/κ)/(1 − l σ_y²/(2 E G)). d does not fall and stays below 1, so that a broken point still holds
+//! its nodes in place.
 //!
 //! The point remembers κ and d.
 //!
@@ -20,7 +20,7 @@ use super::law::{ConstitutiveLaw, LawEntry, LawFactory, Matrix, StrainState};
 use super::quantity::Quantity;
 use crate::tensor::{Tensor, pairs, stress_tensor};
 
-/// The most damage there is: what is left takes no energy that counts, however small elements are.
+/// The largest damage: the remaining stiffness takes no energy that counts, however small elements are.
 const MOST: f64 = 1.0 - 1e-8;
 /// Kratos' most damage.
 const MOST_OF_KRATOS: f64 = 0.99999;
@@ -138,7 +138,7 @@ impl<const S: usize, const STRESS_FREE: bool> IsotropicDamage<S, STRESS_FREE> {
         let strain = without(state.strain, in_form::<S>(free, self.poisson, STRESS_FREE));
         let d = elasticity.in_form(STRESS_FREE);
         let stress = multiply(&d, &strain);
-        // What plane strain has across the plane.
+        // Stress across the plane in plane strain.
         let across = S == 3 && !STRESS_FREE && !state.band_as_kratos;
         let mut whole: Tensor = stress_tensor(&stress);
         if across {

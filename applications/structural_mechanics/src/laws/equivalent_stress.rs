@@ -1,4 +1,4 @@
-//! Equivalent stresses: what of a stress is compared with the uniaxial strength.
+//! Equivalent stresses: the measure of a stress that is compared with the uniaxial strength.
 
 use crate::tensor::{Tensor, deviator, eigen};
 

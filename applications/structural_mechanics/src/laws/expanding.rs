@@ -1,9 +1,9 @@
 //! Laws that expand: any other law, of the deformation that is not thermal.
 //!
-//! Under small strain ε_m = ε − α(T) (T − T₀) 1 and σ = σ(ε_m). Where the strain is Green–Lagrange's, F = θ F_m with
-//! θ = 1 + α (T − T₀) (Lu and Pister, 1975), so that E_m = (E − ½ (θ² − 1) 1)/θ²; the energy is stored by the volume that has
-//! expanded, θ³ times the initial one, hence S = θ S_m(E_m) and dS/dE = dS_m/dE_m / θ. Under plane stress the thickness expands, too;
-//! under plane strain it is held, so that the mechanical strain across the plane is what keeps it. The energy is by initial volume.
+//! Under small strain ε_m = ε − α(T) (T − T₀) 1 and σ = σ(ε_m). Where the strain is Green–Lagrange's, F = θ F_m with θ = 1 + α (T − T₀)
+//! (Lu and Pister, 1975), so that E_m = (E − ½ (θ² − 1) 1)/θ²; the energy is stored by the volume that has expanded, θ³ times the
+//! initial one, hence S = θ S_m(E_m) and dS/dE = dS_m/dE_m / θ. Under plane stress the thickness expands, too; under plane strain it is
+//! held, and the mechanical strain across the plane compensates for the thermal one. The energy is by initial volume.
 //!
 //! α may follow a table over TEMPERATURE; other constants do not.
 
@@ -21,7 +21,7 @@ use crate::tensor::Tensor;
 /// Components of plane strain among those with the strain across the plane.
 const IN_PLANE: [usize; 3] = [0, 1, 3];
 
-/// The state without its thermal part, and what stress and tangent of it are multiplied by.
+/// The state without its thermal part, and the factors of stress and tangent.
 fn mechanical<'a, const S: usize>(state: &StrainState<'a, S>, thermal: f64) -> (StrainState<'a, S>, [f64; 2]) {
     let mut inner = *state;
     if state.small {

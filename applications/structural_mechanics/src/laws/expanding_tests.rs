@@ -100,7 +100,7 @@ fn what_is_free_expands_without_stress() {
     check_free::<3>(PLANE_STRESS);
 }
 
-/// At the reference temperature it is the law itself, also in what it remembers.
+/// At the reference temperature it is the law itself, also in its history.
 fn check_reference<const S: usize>(name: &str)
 where
     LawFactory: MakesLaw<S>,
@@ -128,7 +128,7 @@ fn without_a_change_of_temperature_nothing_changes() {
     check_reference::<3>(PLANE_STRESS);
 }
 
-/// What is held on all sides is under a pressure 3 K α ΔT, to first order.
+/// A specimen held on all sides is under a pressure 3 K α ΔT, to first order.
 #[test]
 fn what_is_held_is_under_pressure() {
     let rise = 0.01;
@@ -174,7 +174,7 @@ fn plane_strain_is_held_across() {
     }
 }
 
-/// The tangent is the slope of the stress, and the stress of what does not flow that of the energy.
+/// The tangent is the slope of the stress, and without plastic flow the stress is the slope of the energy.
 fn check_tangent<const S: usize>(name: &str)
 where
     LawFactory: MakesLaw<S>,
@@ -189,7 +189,7 @@ where
             law.advance(&state::<S>(gradient::<S>(&mut random, 0.03), small, t, &before), &mut history);
         }
         let at = state::<S>(gradient::<S>(&mut random, 0.03), small, t, &history);
-        // Small strain is what laws of small strain take; those of finite strain read Green and Lagrange's.
+        // Laws of small strain take small strain; those of finite strain read that of Green and Lagrange.
         if small && !name.contains("SmallStrain") && !name.contains("Kirchhoff") {
             continue;
         }

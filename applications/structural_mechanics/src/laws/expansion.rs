@@ -44,8 +44,8 @@ pub fn without<const S: usize>(mut strain: [f64; S], part: f64) -> [f64; S] {
     strain
 }
 
-/// The part that plane strain, without its component across the plane, and all other forms have of a thermal strain: what is held
-/// across the plane pushes the others out by ν as much.
+/// The part that plane strain, without its component across the plane, and all other forms have of a thermal strain: the constraint
+/// across the plane adds ν times the strain to the others.
 pub fn in_form<const S: usize>(thermal: f64, poisson: f64, stress_free: bool) -> f64 {
     if S == 3 && !stress_free { (1.0 + poisson) * thermal } else { thermal }
 }

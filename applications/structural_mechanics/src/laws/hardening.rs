@@ -101,7 +101,7 @@ impl Hardening {
         }
     }
 
-    /// What makes the curve unusable.
+    /// The fault that makes the curve unusable.
     fn fault(&self) -> Option<String> {
         let (start, _) = self.at(0.0);
         if !(start > 0.0 && start.is_finite()) {

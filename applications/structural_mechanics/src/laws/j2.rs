@@ -1,8 +1,8 @@
 //! Radial return of von Mises plasticity with isotropic hardening.
 //!
-//! With the trial value q of the von Mises stress, the equivalent plastic strain grows by Δ ≥ 0 so that
-//! q − 3μΔ = σ_y(α + Δ); the deviator shrinks to its (1 − 3μΔ/q)-th part. Small strain and finite strain share this; what
-//! differs is the strain: there it is linear, here it is the logarithm of the elastic stretches.
+//! With the trial value q of the von Mises stress, the equivalent plastic strain grows by Δ ≥ 0 so that q − 3μΔ = σ_y(α + Δ); the
+//! deviator shrinks to its (1 − 3μΔ/q)-th part. Small strain and finite strain share this and differ in the strain: there it is linear,
+//! here it is the logarithm of the elastic stretches.
 
 use zelus_core::diagnostics::Result;
 use zelus_core::model::Properties;
@@ -24,7 +24,7 @@ pub struct J2 {
     pub hardening: Hardening,
 }
 
-/// What the return does to a trial state.
+/// Return mapping of a trial state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Return {
     /// Growth Δ of the equivalent plastic strain.

@@ -1,4 +1,4 @@
-//! What a constitutive law is, and how an element gets the one its properties name.
+//! The trait of constitutive laws, and how an element gets the one its properties name.
 
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::model::Properties;
@@ -30,7 +30,7 @@ pub struct StrainState<'a, const S: usize> {
     pub band: f64,
     /// Whether damage counts as in Kratos.
     pub band_as_kratos: bool,
-    /// What the law remembers from the last accepted step: [`ConstitutiveLaw::history`] numbers.
+    /// History of the law at the last accepted step: [`ConstitutiveLaw::history`] numbers.
     pub history: &'a [f64],
 }
 
@@ -55,7 +55,7 @@ impl<'a, const S: usize> StrainState<'a, S> {
     }
 }
 
-/// Which stress an element integrates.
+/// Stress measure that an element integrates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StressMeasure {
     /// Second Piola–Kirchhoff stress, on the initial configuration.
@@ -87,7 +87,7 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
         false
     }
 
-    /// Whether strength falls, so that what breaks is a band as wide as an element.
+    /// Whether strength falls, so that a band as wide as an element breaks.
     fn softens(&self) -> bool {
         false
     }
@@ -102,7 +102,7 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
         None
     }
 
-    /// Volume that what is free has at a temperature, over its initial one.
+    /// Volume of an unconstrained specimen at a temperature, over its initial one.
     fn free_volume(&self, _temperature: f64) -> f64 {
         1.0
     }
@@ -112,7 +112,7 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
         0
     }
 
-    /// What the law remembers after a step accepted in `state`, whose history is that before the step.
+    /// History of the law after a step accepted in `state`, whose history is that before the step.
     fn advance(&self, _state: &StrainState<'_, S>, _history: &mut [f64]) {}
 
     /// Appends a variable that the law remembers, or derives from it; whether it knows the name.
@@ -150,7 +150,7 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
 /// A function that makes a law with `S` Voigt components from the properties.
 pub type MakeLaw<const S: usize> = fn(&Properties) -> Result<Box<dyn ConstitutiveLaw<S>>>;
 
-/// For which elements a law is, with what makes it.
+/// Elements that a law is for, with its factory.
 #[derive(Clone, Copy)]
 pub enum LawFactory {
     /// For elements in space.
@@ -177,9 +177,9 @@ registered_kind! {
     }
 }
 
-/// That laws are made for `S` Voigt components.
+/// Laws for `S` Voigt components.
 pub trait MakesLaw<const S: usize> {
-    /// What makes the law for them, `plane` as in [`law_of`]; `None` where it is for other elements.
+    /// Function that makes the law for them, `plane` as in [`law_of`]; `None` where it is for other elements.
     fn make(self, plane: bool) -> Option<MakeLaw<S>>;
 }
 

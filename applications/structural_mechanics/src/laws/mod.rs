@@ -1,8 +1,7 @@
-//! Constitutive laws: stress and tangent from strain, and from what the law remembers of the point.
+//! Constitutive laws: stress and tangent from strain and the history of the point.
 //!
-//! A law has the number of its Voigt components in its type (3 plane, 4 axisymmetric, 6 solid), so an element can only
-//! hold one that fits. What a law remembers lies with the element, which passes it in and lets it advance once a step is
-//! accepted.
+//! A law has the number of its Voigt components in its type (3 plane, 4 axisymmetric, 6 solid), so an element can only hold one that
+//! fits. The history of a law lies with the element, which passes it in and lets it advance once a step is accepted.
 
 mod bar_law;
 mod damage;

@@ -1,7 +1,7 @@
 //! Layers that strain alike: S = Σ f_i S_i(E), the factors f_i scaled to add up to one.
 //!
-//! Each layer is a law with properties of its own (`sub_properties` of the material), and remembers what it remembers. Laws
-//! here are isotropic, so that the directions of layers (LAYER_EULER_ANGLES) do not matter.
+//! Each layer is a law with properties of its own (`sub_properties` of the material) and its own history. Laws here are isotropic, so
+//! that the directions of layers (LAYER_EULER_ANGLES) do not matter.
 
 use crate::laws::LawEntry;
 use zelus_core::diagnostics::{Diagnostic, Result};
@@ -48,7 +48,7 @@ impl<const S: usize> ParallelMixture<S> {
         Ok(Box::new(Self { layers }))
     }
 
-    /// Each layer with its factor and its part of what is remembered.
+    /// Each layer with its factor and its part of the history.
     fn each<'a>(
         &'a self,
         state: &StrainState<'a, S>,

@@ -45,7 +45,7 @@ fn green<const S: usize>(f: &Tensor) -> [f64; S] {
     strain_vector(&(0.5 * (f.transpose() * f - IDENTITY)))
 }
 
-/// What is remembered after the strain, starting from `history`.
+/// History after the strain, starting from `history`.
 fn advanced<const S: usize>(law: &dyn ConstitutiveLaw<S>, strain: [f64; S], history: &[f64]) -> Vec<f64> {
     let mut next = history.to_vec();
     law.advance(&state(strain, IDENTITY, history), &mut next);
@@ -184,7 +184,7 @@ fn finite_strain_does_not_see_rotations() {
     assert!((0..6).all(|v| near(other[v], expected[v], 1e-12 * E)), "{other:?} {expected:?}");
     let pushed = push_forward(&a, &turn, 1.0);
     assert!((0..6).all(|v| (0..6).all(|w| near(b[v][w], pushed[v][w], 1e-11 * E))));
-    // a rotation before the first step turns what is remembered with it
+    // a rotation before the first step rotates the history with it
     let earlier = first * turn;
     let before = advanced(law.as_ref(), green(&earlier), &[0.0; 7]);
     let carried = congruent(&turn.transpose(), &remembered(&history).0);

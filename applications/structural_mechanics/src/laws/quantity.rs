@@ -18,7 +18,7 @@ pub(super) enum Quantity {
 const LEAST: f64 = 1e-6;
 
 impl Quantity {
-    /// What the properties give by that name: a table over TEMPERATURE goes before a number.
+    /// Value of the properties by that name: a table over TEMPERATURE goes before a number.
     ///
     /// # Errors
     /// Neither is there.

@@ -45,7 +45,7 @@ pub(super) fn remember(tensor: &Tensor, alpha: f64, history: &mut [f64]) {
 /// The work of the stress on the plastic strain of the step that is not yet accepted, by initial volume.
 pub const PLASTIC_WORK: &str = "PLASTIC_WORK_INCREMENT";
 
-/// What plastic laws answer of their history: equivalent plastic strain under its names, the plastic strain as a vector.
+/// Variables of plastic laws from their history: equivalent plastic strain under its names, the plastic strain as a vector.
 pub(super) fn answer<const S: usize>(plastic: &Tensor, alpha: f64, variable: &str, out: &mut Vec<f64>) -> bool {
     match variable {
         "EQUIVALENT_PLASTIC_STRAIN" | "ACCUMULATED_PLASTIC_STRAIN" => out.push(alpha),

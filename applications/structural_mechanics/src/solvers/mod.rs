@@ -26,7 +26,7 @@ pub const VARIABLES: [NodalVariable; 8] = [
     ("VOLUME_ACCELERATION", 3),
 ];
 
-/// Marks what elements read of the settings.
+/// Marks the settings that elements read.
 ///
 /// # Errors
 /// A name that is none.

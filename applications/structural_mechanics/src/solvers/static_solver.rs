@@ -5,7 +5,7 @@ use zelus_core::register;
 
 register! { SolverEntry "Static",
     aliases: &["static"],
-    about: "equilibrium at each time; time only orders the loads",
+    about: "static equilibrium at each time; time is the load factor",
     defaults: super::STATIC_DEFAULTS,
     like: &[("kratos", include_str!("../../../../configs/like_kratos/static.json"))],
     build: SolverDefinition {

@@ -1,4 +1,4 @@
-//! How a stage reaches the end of one of the deck's steps: attempts, cut where they do not converge, and what follows those that do.
+//! Attempts at a step of the deck: cut where they do not converge, accepted where they do.
 
 use std::time::Instant;
 
@@ -27,7 +27,7 @@ impl Stage {
             if let Some(why) = record.coarse.as_ref().filter(|_| saved.is_some() && lengths.refine(to - from)) {
                 let factor = self.schedule.cutting.factor;
                 run.monitor
-                    .note(&format!("step {} to time {to}: {why}; made anew with 1/{factor} of the step", record.step));
+                    .note(&format!("step {} to time {to}: {why}; repeated with 1/{factor} of the step", record.step));
                 saved.expect("just asked for").restore(run.model.root_mut(&self.root)?, &mut self.system);
                 continue;
             }
@@ -55,7 +55,9 @@ impl Stage {
                 let tried = match self.schedule.cutting {
                     _ if !can_cut => "the solver does not cut steps".to_owned(),
                     _ if is_in_vain => "a shorter step failed in the same way: it is the same problem".to_owned(),
-                    Cutting { times, factor } => format!("{times} cuts of the step by {factor} did not help"),
+                    Cutting { times, factor } => {
+                        format!("{times} cut{} of the step by {factor} did not help", if times == 1 { "" } else { "s" })
+                    }
                 };
                 let kept = self.keep_last_iterate(run.model);
                 if record.singular {

@@ -95,7 +95,7 @@ impl Stage {
         }
     }
 
-    /// What it is going to do, as the first of the `left` stages of `all`.
+    /// Plan of this stage, the first of the `left` remaining stages of `all`.
     pub(super) fn plan(&self, left: usize, all: usize) -> Plan {
         let [start, end] = self.schedule.interval();
         Plan { stage: all - left + 1, stages: all, start, end, steps: self.schedule.stepping.count(start, end) }
@@ -106,12 +106,12 @@ impl Stage {
         &self.root
     }
 
-    /// What computes on that part.
+    /// System that computes on that part.
     pub(super) fn system(&self) -> &System {
         &self.system
     }
 
-    /// Keeps other runs from writing what this one does.
+    /// Keeps other runs from writing the outputs of this one.
     fn claim(&mut self, ranks: &Ranks) -> Result<()> {
         let outputs = self.files.iter().filter_map(FileUse::output).filter(|_| ranks.is_root());
         self.claims = Some(ranks.agree(outputs.map(Claim::of).collect())?);
@@ -138,7 +138,7 @@ impl Stage {
         self.processes.iter_mut().filter_map(|process| process.saves(model)).collect()
     }
 
-    /// What it remembers between steps.
+    /// State between steps.
     pub(super) fn state(&self) -> SavedStage {
         SavedStage {
             begun: self.begun,
@@ -152,7 +152,7 @@ impl Stage {
         }
     }
 
-    /// Takes up what it remembered between steps; `model` is that of then.
+    /// Restores its state between steps; `model` is the saved one.
     ///
     /// # Errors
     /// States of another deck; files of output that are not there any more.
@@ -210,11 +210,11 @@ impl Stage {
         self.reach(target, run).map(|()| true)
     }
 
-    /// Finalises the processes, also after a step that has failed, or suspends them where the stage goes on later; what elements remember
-    /// goes to `systems`.
+    /// Finalises the processes, also after a step that has failed, or suspends them where the stage goes on later; the states of
+    /// elements go to `systems`.
     ///
     /// # Errors
-    /// `result`, the end of the last step, or else what a process has met.
+    /// `result`, the end of the last step, or else the error of a process.
     pub(super) fn finish(
         mut self,
         (result, goes_on): (Result<()>, bool),
@@ -249,7 +249,7 @@ impl Stage {
         result.and(finalized).and(finals.finish().map(|_| ()))
     }
 
-    /// Hands on what processes, interactions and the strategy have to tell; collective.
+    /// Passes on the messages of processes, interactions and the strategy; collective.
     fn pass_on_messages(&mut self, run: &mut RunContext<'_>) {
         let mut own = self.strategy.messages();
         own.extend(messages_of(&mut self.processes, &mut self.system));

@@ -67,7 +67,7 @@ impl<'a> ParsedStage<'a> {
         of_solver.absorb(solver.check_names());
         let root = of_solver.absorb(root_name(&solver.settings)).unwrap_or_default();
         warn_of_unheeded(&deck, times.zip(stepping.as_ref()), &mut problems);
-        // Where settings do not fit, what follows from their defaults is no mistake of the deck.
+        // Where settings are unsuitable, consequences of their defaults are no mistake of the deck.
         if solver.is_sound {
             of_solver.diagnostics().iter().for_each(|problem| problems.push(problem.clone()));
         }
@@ -95,7 +95,7 @@ fn present_deck(
         let laid = lay_defaults(&mut deck, program, problems);
         let laid = problems.absorb(laid).unwrap_or_default();
         monitor.note(&format!(
-            "defaults of {program} hold where the deck names nothing: {} settings, which the report lists",
+            "defaults of {program} are used where the deck gives none: {} settings, listed in the report",
             laid.len()
         ));
         report.like = Some(program.to_owned());

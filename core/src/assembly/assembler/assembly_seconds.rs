@@ -1,6 +1,6 @@
 //! Time spent on assembly.
 
-/// Seconds spent assembling, by what was assembled.
+/// Seconds spent assembling, by quantity.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct AssemblySeconds {
     /// Residuals.

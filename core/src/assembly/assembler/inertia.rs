@@ -34,7 +34,7 @@ pub fn damped_by_properties(part: &ModelPart, system: &System) -> bool {
         || system.elements.iter().any(|block| block.has_damping())
 }
 
-/// Which unknowns have no rate for damping to act on; empty when elements have none of them.
+/// Mask of unknowns that have no rate for damping to act on; empty when elements have none of them.
 pub(super) fn without_rates(system: &System) -> Vec<bool> {
     let rateless = |dof: &Dof| dof.rates().is_none();
     let dofs = system.dofs.dofs();

@@ -10,7 +10,7 @@ use crate::model::{ColumnOf, FIRST, ModelPart, SECOND};
 
 /// Iterations after which the projection stops.
 const MOST_ITERATIONS: usize = 500;
-/// Share of what is projected that may be left.
+/// Largest remainder of a projection, relative to the projected vector.
 const TOLERANCE: f64 = 1e-15;
 
 impl Assembler {
@@ -36,8 +36,8 @@ impl Assembler {
         Ok(out)
     }
 
-    /// Step start: takes the mass off `nodes`, where others can carry it, and hands on what their velocities and
-    /// accelerations have beyond those of the others, so that momentum stays and energy does not grow. Collective.
+    /// Step start: takes the mass off `nodes`, where others can carry it, and hands on the excess of their velocities and accelerations
+    /// over those of the others, so that momentum stays and energy does not grow. Collective.
     ///
     /// # Errors
     /// An entity that cannot be computed.

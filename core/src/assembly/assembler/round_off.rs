@@ -9,7 +9,8 @@ use crate::assembly::reach::reach;
 use crate::assembly::rows::ROWS;
 use crate::model::ModelPart;
 
-/// Largest stiffness of an interaction in those of the bodies: what a stiff penalty adds to the round-off of forces.
+/// Largest stiffness of an interaction, relative to that of the bodies, that counts in round-off: a stiff penalty adds to the round-off
+/// of forces.
 const STIFFEST: f64 = 100.0;
 
 impl Assembler {
@@ -40,7 +41,7 @@ impl Assembler {
         let coupling = self.coupling.matrix();
         let of_coupling = [&mut coupled[..], &mut pushed, &mut gaps];
         coupling.add_products_of_sizes(&coupling.values, [&position, &multiplier, &farthest], of_coupling);
-        // Gaps are integrated over facets: a node at the origin is known no better than what lies around it.
+        // Gaps are integrated over facets: a node at the origin is as accurate as its neighbours, no more.
         for (n, _) in dofs.iter().enumerate().filter(|(_, dof)| dof.multiplier) {
             let (columns, values) = coupling.row(n);
             // Rows with multipliers are no gaps alone.

@@ -1,4 +1,4 @@
-//! What the assembler remembers between steps: what tells whether the next system is the last one.
+//! State of the assembler between steps: it tells whether the next system equals the last one.
 
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +30,7 @@ impl AssemblerState {
 }
 
 impl Assembler {
-    /// What it remembers between steps.
+    /// State between steps.
     pub fn state(&self) -> AssemblerState {
         let (reduced_graph, tangent_key) = self.bulk.origin();
         AssemblerState {
@@ -42,10 +42,10 @@ impl Assembler {
         }
     }
 
-    /// Takes up what it remembered of the same part and system.
+    /// Restores the state of the same part and system.
     ///
     /// # Errors
-    /// What is of another part or system.
+    /// A state of another part or system.
     pub fn resume(&mut self, part: &ModelPart, system: &System, state: AssemblerState) -> Result<()> {
         let AssemblerState { equations, stamps, reduced_graph, tangent_key, redistribution } = state;
         if !redistribution.is_of(part.nodes.len(), system.dofs.len()) {

@@ -1,4 +1,4 @@
-//! What a residual is made of: the forces of loads, and what interactions exchange.
+//! Parts of a residual: the forces of loads, and the forces that interactions exchange.
 
 use super::Assembler;
 use super::coupling_tangent::blocks_of;
@@ -8,7 +8,7 @@ use crate::diagnostics::Result;
 use crate::entities::{Tangent, Want};
 use crate::model::ModelPart;
 
-/// What an entity between two bodies does to one unknown.
+/// Force of an entity between two bodies on one unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Push {
     /// Place of the interaction.
@@ -26,8 +26,8 @@ pub struct Push {
 impl Assembler {
     /// External forces of elements and conditions, over all unknowns; collective.
     ///
-    /// Loads that depend on the state count as they are; of conditions with a constant tangent, as springs, only what they state
-    /// apart.
+    /// Loads that depend on the state count as they are; of conditions with a constant tangent, as springs, only the loads that they
+    /// state apart.
     ///
     /// # Errors
     /// An entity that cannot be computed.
@@ -55,7 +55,7 @@ impl Assembler {
         Ok(out)
     }
 
-    /// Minus what elements store by their own equations, over all unknowns; collective.
+    /// Minus the storage of elements by their own equations, over all unknowns; collective.
     ///
     /// # Errors
     /// An entity that cannot be computed.
@@ -69,7 +69,7 @@ impl Assembler {
         Ok(out)
     }
 
-    /// Forces of interactions over all unknowns; `push` hears of those between pairs of bodies, those of this rank. Collective.
+    /// Forces of interactions over all unknowns; `push` is called with those between pairs of bodies, those of this rank. Collective.
     ///
     /// # Errors
     /// An entity that cannot be computed.

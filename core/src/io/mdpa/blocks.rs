@@ -143,7 +143,7 @@ impl Reader<'_> {
         all_lines.push(lines);
     }
 
-    /// What follows the id of a row of data; whether it was good. The first row decides the type of the column.
+    /// The value after the id in a row of data; returns whether it was good. The first row decides the type of the column.
     fn data_row(&mut self, open: Open, id: u32, nodal: bool, column: &mut Option<DataColumn>) -> bool {
         let line = self.tokens.line;
         let mut is_fixed = false;

@@ -1,4 +1,4 @@
-//! What the blocks of an mdpa file say of each other: ids defined once, references to what exists.
+//! Checks across the blocks of an mdpa file: ids defined once, references to existing entities.
 
 use std::collections::BTreeMap;
 

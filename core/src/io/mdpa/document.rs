@@ -1,8 +1,8 @@
-//! What an mdpa file says, without interpretation.
+//! Contents of an mdpa file, without interpretation.
 
 use std::path::PathBuf;
 
-/// A line of the file, from 1. All lines compare equal: where something stands is not what it says.
+/// A line of the file, from 1. All lines compare equal: the position of an entry is not part of its contents.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Line(pub u32);
 

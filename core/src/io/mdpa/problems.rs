@@ -1,4 +1,4 @@
-//! What is wrong with a mesh file, line by line.
+//! Faults of a mesh file, line by line.
 
 use std::path::Path;
 
@@ -23,7 +23,7 @@ impl<'a> Problems<'a> {
         self.report.diagnostics().len() > Self::CAP
     }
 
-    /// Adds what is wrong at a line.
+    /// Adds a fault at a line.
     pub(super) fn push(&mut self, line: u32, diagnostic: Diagnostic) {
         if self.report.diagnostics().len() == Self::CAP {
             let fact = format!("more than {} problems; the rest of the file is not looked at", Self::CAP);

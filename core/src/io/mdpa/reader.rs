@@ -7,7 +7,7 @@ use super::{check, check::Lines};
 use crate::diagnostics::{Diagnostic, Error, Place, Result, did_you_mean};
 use std::path::Path;
 
-/// What the reader must know of the registered elements, conditions and geometries, and of the flags.
+/// Data of the registered elements, conditions and geometries, and of the flags, that the reader needs.
 pub struct EntityNames<'a> {
     /// Number of nodes of a registered name.
     pub nodes_of: &'a dyn Fn(&str) -> Option<usize>,
@@ -59,7 +59,7 @@ pub(super) struct Open<'a> {
     pub(super) line: u32,
 }
 
-/// What is read so far, and where.
+/// Contents read so far, and the present position.
 pub(super) struct Reader<'a> {
     pub(super) tokens: Tokens<'a>,
     pub(super) names: &'a EntityNames<'a>,
@@ -161,7 +161,7 @@ impl<'a> Reader<'a> {
             .push(line, Diagnostic::error("unknown-block", format!("there is no block `{kind}`")).remedy(remedy));
     }
 
-    /// Skips what is left of a block and of the blocks in it.
+    /// Skips the rest of a block and of the blocks in it.
     pub(super) fn skip_block(&mut self, open: Open) {
         let mut depth = 1;
         while let Some(word) = self.tokens.word() {

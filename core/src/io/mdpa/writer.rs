@@ -19,7 +19,7 @@ pub fn write(document: &MdpaDocument, path: &Path) -> Result<()> {
 /// Writes the text of a document.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn write_to(document: &MdpaDocument, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "Begin ModelPartData")?;
     entries(&document.model_part_data, "", out)?;

@@ -1,4 +1,4 @@
-//! What a result file shows, as plain arrays.
+//! Contents of a result file, as plain arrays.
 
 use crate::geometry::Shape;
 

@@ -47,7 +47,7 @@ impl GaussResult {
 /// Writes the meshes of one dataset, one for each shape in it, coordinates with the first mesh of a file.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn write_gid_mesh(out: &mut impl Write, data: &Dataset, kind: GidKind, with_points: bool) -> io::Result<()> {
     let mut shapes = data.cells.shapes.clone();
     shapes.sort_unstable();
@@ -79,7 +79,7 @@ pub fn write_gid_mesh(out: &mut impl Write, data: &Dataset, kind: GidKind, with_
 /// Writes the head of a file of results: its format and the sets of Gauss points used in it.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn write_gid_results_head(out: &mut impl Write, gauss: &[GaussResult]) -> io::Result<()> {
     writeln!(out, "GiD Post Results File 1.0")?;
     let mut written: Vec<String> = Vec::new();
@@ -109,7 +109,7 @@ pub fn write_gid_results_head(out: &mut impl Write, gauss: &[GaussResult]) -> io
 /// Writes the columns over points and the Gauss results of one step, `label` being its time or number.
 ///
 /// # Errors
-/// Those of the writer.
+/// Errors of the writer.
 pub fn write_gid_step(
     out: &mut impl Write,
     label: f64,

@@ -1,6 +1,6 @@
 //! Result files from plain arrays: legacy VTK, VTU with its PVD series, PVTU, GiD; VTU is also read.
 //!
-//! A [`Dataset`] is what a picture shows: points, cells, named columns. The writers know nothing of models.
+//! A [`Dataset`] is the contents of a picture: points, cells, named columns. The writers know nothing of models.
 
 mod dataset;
 mod gid;

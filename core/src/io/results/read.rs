@@ -10,9 +10,9 @@ use super::dataset::{Column, Dataset, Values};
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::geometry::Shape;
 
-/// What stands between the tags of a file and its arrays.
+/// Text between the tags of a file and its arrays.
 const MARK: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
-/// Most bytes of an array: what is damaged must not fill the memory.
+/// Most bytes of an array: damaged lengths must not fill the memory.
 const MOST: u64 = 1 << 34;
 
 /// The columns that hold the ids of points and of cells, where they are written.
@@ -59,7 +59,7 @@ pub fn read_vtu(path: &Path) -> Result<Dataset> {
 /// The picture that the bytes of a VTU file hold.
 ///
 /// # Errors
-/// What is wrong with them.
+/// The fault of the bytes.
 pub fn vtu_of(bytes: &[u8]) -> std::result::Result<Dataset, String> {
     let head = bytes.windows(MARK.len()).position(|window| window == MARK).ok_or("it has no appended data")?;
     let (text, data) = (String::from_utf8_lossy(&bytes[..head]), &bytes[head + MARK.len()..]);

@@ -87,7 +87,7 @@ impl Array {
     }
 }
 
-/// The array called `name`. What is appended is not XML: it is found by its length, whatever bytes it holds.
+/// The array called `name`. Appended data are not XML: they are found by their length, whatever bytes they hold.
 fn read_array(path: &Path, name: &str) -> Array {
     const MARK: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
     let file = std::fs::read(path).unwrap();

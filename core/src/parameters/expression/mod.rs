@@ -1,9 +1,9 @@
 //! Functions of space and time as decks write them: `"1.0*(t-2.0)/8.0"`.
 //!
-//! Variables `x y z` (current position), `X Y Z` (initial position) and `t` (TIME); constants `pi` and `e`; operators
-//! `+ - * / % ^` with `**` for `^`; functions of one or two arguments; `A if LEFT < RIGHT else B`. Three rules differ
-//! from other languages, and decks rely on them: a sign binds tighter than `^` (`-t^2` is `(-t)^2`), `^` groups from the
-//! left (`2^3^2` is 64), and `log` is the decadic logarithm (`ln` the natural one). Of a comma list the last one counts.
+//! Variables `x y z` (current position), `X Y Z` (initial position) and `t` (TIME); constants `pi` and `e`; operators `+ - * / % ^`
+//! with `**` for `^`; functions of one or two arguments; `A if LEFT < RIGHT else B`. Three rules differ from other languages, and decks
+//! rely on them: a sign binds tighter than `^` (`-t^2` is `(-t)^2`), `^` groups from the left (`2^3^2` is 64), and `log` is the decadic
+//! logarithm (`ln` the natural one). Of a comma-separated list the last value counts.
 
 mod functions;
 mod parser;
@@ -39,9 +39,9 @@ pub struct SpaceTime {
 pub struct ExpressionError {
     /// Character of the text, from 1.
     pub column: u32,
-    /// What is the case there.
+    /// The fact.
     pub fact: String,
-    /// What to do about it.
+    /// The remedy.
     pub remedy: Option<String>,
 }
 
@@ -82,7 +82,7 @@ enum Op {
     Skip(usize),
 }
 
-/// Values an expression may hold at once; the parser refuses what needs more.
+/// Values an expression may hold at once; the parser refuses longer ones.
 const STACK: usize = 64;
 
 impl Expression {
@@ -218,7 +218,7 @@ impl<'de> serde::Deserialize<'de> for Expression {
     }
 }
 
-/// What of a long text stands around a column, which counts from 1.
+/// Excerpt of a long text around a column, which counts from 1.
 fn excerpt(text: &str, column: u32) -> String {
     const REACH: usize = 60;
     let [length, at] = [text.chars().count(), column as usize - 1];

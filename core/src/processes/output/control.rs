@@ -5,7 +5,7 @@ use crate::diagnostics::Result;
 use crate::model::ProcessInfo;
 use crate::parameters::Settings;
 
-/// What intervals of output are counted in.
+/// Unit of intervals of output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Unit {
     Step,

@@ -15,9 +15,9 @@ use crate::{register, registered_kind};
 
 /// A picture of a model part in one step, for a format to write.
 pub struct Shown<'a> {
-    /// The part, for its step data and what a rank has of it.
+    /// The part, for its step data and the share of a rank.
     pub part: &'a ModelPart,
-    /// Points, cells and columns; of several ranks what this one has.
+    /// Points, cells and columns; of several ranks the share of this one.
     pub data: &'a Dataset,
     /// Surfaces of interfaces beside the mesh; none where the deck does not ask for them, or the format has none
     /// ([`OutputFormat::has_surfaces`]).
@@ -77,7 +77,7 @@ pub trait OutputFormat: Send {
         Ok(())
     }
 
-    /// What it remembers between pictures, for the file of a saved run.
+    /// State between pictures, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None
     }
@@ -90,7 +90,7 @@ pub trait OutputFormat: Send {
         Ok(())
     }
 
-    /// What a user would open; the folder unless the format has files that name the others.
+    /// Files that a user opens; the folder unless the format has files that name the others.
     fn outputs(&self, folder: &Path) -> Vec<PathBuf> {
         vec![folder.to_owned()]
     }
@@ -153,7 +153,7 @@ impl State for Vtu {
 }
 
 impl Vtu {
-    /// Writes a VTU file, or one a rank and a PVTU file that lists them; gives the name of what to open. Collective.
+    /// Writes a VTU file, or one a rank and a PVTU file that lists them; returns the name of the file to open. Collective.
     ///
     /// Ranks without cells and points write nothing, unless all are without. The list is written once all that it lists is.
     fn write_file(shown: &Shown<'_>) -> Result<String> {

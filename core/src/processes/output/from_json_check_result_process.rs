@@ -41,7 +41,7 @@ struct FromJsonCheck {
     messages: Vec<Diagnostic>,
 }
 
-/// Values that differ, in words: beyond all bounds, and only by what the reference itself leaves open.
+/// Values that differ, in words: beyond all bounds, and only within the uncertainty of the reference.
 #[derive(Default)]
 struct Differences {
     wrong: Vec<String>,
@@ -101,7 +101,7 @@ impl FromJsonCheck {
         (!points.is_empty()).then(|| Table::new(points).value(time))
     }
 
-    /// What differs on any rank; collective.
+    /// Differences on any rank; collective.
     fn compare(&self, part: &ModelPart, system: &System, selection: &SubPart) -> Differences {
         let mut found = Differences::default();
         let time = part.info.time;

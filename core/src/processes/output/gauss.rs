@@ -99,7 +99,7 @@ pub(super) fn means(
     Column::real(&quantity.name, components, values)
 }
 
-/// What a Gauss point counts by in means.
+/// Weight of a Gauss point in means.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Share {
     /// The volume it stands for.
@@ -169,8 +169,8 @@ fn widen(values: &[f64], from: usize, to: usize, rows: usize) -> Vec<f64> {
     out
 }
 
-/// The values as they are, in one result for each shape and number of points; stresses and strains in GiD's order. Of several
-/// ranks the first gets those of all; collective.
+/// The values as they are, in one result for each shape and number of points; stresses and strains in GiD's order. The first rank gets
+/// those of all ranks; collective.
 pub(super) fn as_they_are(
     part: &ModelPart,
     system: &System,

@@ -141,7 +141,7 @@ impl GidOutput {
         })
     }
 
-    /// What is shown; of several ranks the first has it. Collective.
+    /// The results to show; of several ranks the first has them. Collective.
     fn results(
         &self,
         part: &ModelPart,

@@ -39,7 +39,7 @@ struct JsonOutput {
     last_write: Option<Instant>,
 }
 
-/// What has been sampled so far.
+/// Samples so far.
 #[derive(Clone, Default, Serialize, Deserialize)]
 struct Histories {
     /// Nodes of this rank that have passed the filter, ascending.
@@ -68,7 +68,7 @@ stored_as_bytes!(JsonOutputState);
 
 #[typetag::serde(name = "json_output")]
 impl State for JsonOutputState {
-    /// Every rank gets what the first had, which is all.
+    /// Every rank gets the complete list of the first one.
     fn carry(&mut self, _carrier: &mut dyn Carrier) {
         self.regrouped = true;
     }
@@ -311,7 +311,7 @@ impl<W: Write> Json<'_, W> {
 
     fn number(&mut self, value: f64) -> io::Result<()> {
         self.line()?;
-        // JSON has no word for what is not a number.
+        // JSON has no word for a value that is not a number.
         if value.is_finite() { write!(self.out, "{value:?}") } else { write!(self.out, "null") }
     }
 
@@ -401,7 +401,7 @@ impl Process for JsonOutput {
         Ok(())
     }
 
-    /// A run that fails before the first step leaves what an earlier one has written.
+    /// A run that fails before the first step leaves the file of an earlier one.
     fn finalize(&mut self, model: &mut Model) -> Result<()> {
         if self.series.times.is_empty() && self.file.exists() { Ok(()) } else { self.write(model) }
     }

@@ -1,4 +1,4 @@
-//! Whether the lists of a deck name what is where they look for it.
+//! Checks that the names in the lists of a deck exist in the place that each list refers to.
 
 use super::gauss::is_known;
 use super::quantity::{GaussQuantity, Quantity};
@@ -19,7 +19,7 @@ fn better(name: &str, asked: &str, part: &ModelPart, system: &System) -> Option<
     if lists.iter().any(|(list, knows)| *list == asked && *knows) {
         return None;
     }
-    // processes write into columns without history while a run goes on, as what they extrapolate
+    // processes write into columns without history during a run, such as extrapolated values
     let lists = if asked == VALUES { &lists[..1] } else { &lists[..] };
     lists.iter().find(|(_, knows)| *knows).map(|(list, _)| *list)
 }

@@ -1,4 +1,4 @@
-//! What a picture of a model part shows: settings shared by the VTK and VTU processes, and the data they ask for.
+//! Contents of a picture of a model part: settings shared by the VTK and VTU processes, and the data they ask for.
 
 use super::gauss::{self, Share};
 use super::place::one_of;
@@ -10,7 +10,7 @@ use crate::io::results::{Column, Dataset};
 use crate::model::{EntityTable, ModelPart, Role, SubPart};
 use crate::parameters::Settings;
 
-/// Which entities are the cells.
+/// Entities that are the cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CellChoice {
     /// Elements where there are any, else conditions.
@@ -31,8 +31,8 @@ pub(super) struct Mesh {
 }
 
 impl Mesh {
-    /// The mesh of a part; nodes of its cells belong to it even where the part does not list them. Of several ranks each has
-    /// the cells it evaluates with their points, and its nodes that no cell has; collective.
+    /// The mesh of a part; nodes of its cells belong to it even where the part does not list them. Each rank has the cells it evaluates
+    /// with their points, and its nodes that no cell has; collective.
     pub(super) fn new(part: &ModelPart, selection: &SubPart, choice: CellChoice, deformed: bool) -> Self {
         let elements = match choice {
             CellChoice::Automatic => part.ranks.any(!selection.elements.is_empty()),
@@ -62,8 +62,8 @@ impl Mesh {
     }
 }
 
-/// The cells of a whole part on all its nodes, with what runs are looked at for and no column of the model holds: quantities of
-/// Gauss points as values at nodes and as means of cells, and the properties and sub part of each cell. Collective.
+/// The cells of a whole part on all its nodes, with default output variables that no column of the model holds: quantities of Gauss
+/// points as values at nodes and as means of cells, and the properties and sub part of each cell. Collective.
 pub fn usual_results(part: &ModelPart, system: &System) -> Dataset {
     let mut mesh = Mesh::new(part, &part.tree, CellChoice::Automatic, false);
     for quantity in usual::gauss(part, system) {
@@ -121,7 +121,7 @@ pub(super) struct Picture {
     condition_values: Vec<Quantity>,
     condition_flags: Vec<&'static str>,
     gauss: Vec<GaussQuantity>,
-    /// Whether no list names anything, and what runs are looked at for is shown.
+    /// Whether no list names anything, and the default output variables are shown.
     pub(super) usual: bool,
     /// Where the deck names the picture; `None` where names in other lists than theirs are written as zeros.
     refuses: Option<Place>,
@@ -161,7 +161,7 @@ impl Picture {
         Ok(out)
     }
 
-    /// What is wrong with its lists, once all unknowns are known.
+    /// Faults of its lists, once all unknowns are known.
     pub(super) fn check(&self, part: &ModelPart, system: &System) -> Vec<Diagnostic> {
         let Some(place) = &self.refuses else { return Vec::new() };
         lists::check(part, system, place, &self.history, &self.values, &self.extrapolated)

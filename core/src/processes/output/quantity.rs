@@ -22,7 +22,7 @@ impl Quantity {
         Ok(Self { name: name.to_owned(), variable })
     }
 
-    /// As [`Quantity::list`] for pictures, which leave out what is known and has no values here, with a warning.
+    /// As [`Quantity::list`] for pictures, which leave out known quantities without values here, with a warning.
     pub(super) fn shown(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<Self>> {
         each(settings, key, report, true, Self::new)
     }
@@ -144,8 +144,8 @@ fn computed(name: &str) -> Result<(), Diagnostic> {
 
 const NOT_COMPUTED: &str = "not-computed";
 
-/// What `make` makes of the names of a list; problems go to `report`. With `leave_out`, what is known and has no values is
-/// left out with a warning.
+/// Applies `make` to the names of a list; problems go to `report`. With `leave_out`, known quantities without values are left out with
+/// a warning.
 fn each<T>(
     settings: &Settings,
     key: &str,

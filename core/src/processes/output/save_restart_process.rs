@@ -14,7 +14,7 @@ use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
 
-/// What the interval is counted in.
+/// Unit of the interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Unit {
     Time,
@@ -29,7 +29,7 @@ struct SaveRestart {
     folder: PathBuf,
     /// Files that are kept; `None` for all.
     most: Option<usize>,
-    /// When the clock was looked at last.
+    /// Time of the last look at the clock.
     since: Instant,
     saved: Saved,
 }

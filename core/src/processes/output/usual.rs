@@ -1,4 +1,4 @@
-//! What a picture shows where its deck names nothing.
+//! Default contents of a picture, where the deck names nothing.
 
 use std::collections::BTreeMap;
 
@@ -21,13 +21,13 @@ pub(super) fn history(part: &ModelPart) -> Vec<Quantity> {
     names.filter(|name| part.nodes.history.has(name)).filter_map(|name| Quantity::new(name).ok()).collect()
 }
 
-/// What applications find at nodes.
+/// Default nodal variables of the applications.
 pub(super) fn values(part: &ModelPart) -> Vec<Quantity> {
     let names = UsualResults::values().into_iter().filter(|name| part.nodes.values.has(name));
     names.filter_map(|name| Quantity::new(name).ok()).collect()
 }
 
-/// What elements of any rank know at their Gauss points; collective.
+/// Default variables that elements of any rank know at their Gauss points; collective.
 pub(super) fn gauss(part: &ModelPart, system: &System) -> Vec<GaussQuantity> {
     let all = UsualResults::gauss().into_iter().filter_map(|name| GaussQuantity::new(name).ok());
     all.filter(|quantity| part.ranks.any(is_known(system, Role::Element, quantity))).collect()

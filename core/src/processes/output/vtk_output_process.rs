@@ -169,7 +169,7 @@ impl VtkOutput {
     }
 }
 
-/// When output is wanted next, and what the format remembers.
+/// Time of the next output, and the state of the format.
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Self")]
 struct VtkOutputState {

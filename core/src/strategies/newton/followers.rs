@@ -1,6 +1,6 @@
 //! Increments that count with the unknowns of a [`Follower`].
 //!
-//! With K the tangent of the strategy, r its forces, and T the follower's unknowns, T₀ what these lack already,
+//! With K the tangent of the strategy, r its forces, and T the follower's unknowns, T₀ their own out-of-balance increment,
 //!
 //! K δu = r + F δT, δT = T₀ + G δu, F = ∂r/∂T, G = ∂T/∂u
 //!
@@ -18,9 +18,9 @@ use crate::entities::{Follower, Interaction};
 use crate::model::{ModelPart, NodalState};
 use crate::strategies::linear_solve::{Failed, Solved};
 
-/// Share of an increment by which differences move the state, over what moves its unknowns by their own size.
+/// Step of finite differences, relative to the increment that moves the unknowns by their own size.
 const NEARBY: f64 = 1e-6;
-/// Share of the right-hand side at which the increment of the follower is known well enough: the next iteration mends what is left.
+/// Share of the right-hand side at which the increment of the follower is accurate enough: the next iteration corrects the rest.
 const ACCURACY: f64 = 1e-3;
 /// Directions that are tried for it.
 const MOST: usize = 30;
@@ -54,7 +54,7 @@ impl NewtonRaphson {
     /// why it cannot.
     ///
     /// # Errors
-    /// Those of the follower.
+    /// Errors of the follower.
     pub(super) fn follow(
         &mut self,
         part: &mut ModelPart,
@@ -71,7 +71,7 @@ impl NewtonRaphson {
         failure
     }
 
-    /// `solved` with what the follower, if there is one, adds to it; `prescribed` is the increment of unknowns that are not free.
+    /// `solved` with the contribution of the follower, if there is one; `prescribed` is the increment of unknowns that are not free.
     ///
     /// # Errors
     /// A singular system, entities that cannot be computed nearby.
@@ -138,7 +138,7 @@ impl NewtonRaphson {
         Ok(solved)
     }
 
-    /// G δu: what the follower does where the unknowns change by this.
+    /// G δu: the response of the follower to a change of the unknowns.
     fn response(
         &mut self,
         increment: &[f64],
@@ -200,7 +200,7 @@ impl NewtonRaphson {
     }
 }
 
-/// Lets the interactions write what others read of the present state.
+/// Lets the interactions write their results in the present state into the fields, for others to read.
 fn show(part: &mut ModelPart, system: &mut System) {
     system.interactions.iter_mut().filter_map(|interaction| interaction.active_set()).for_each(|set| set.show(part));
 }

@@ -21,14 +21,14 @@ const HALF: f64 = 0.5;
 /// How often an increment that turns elements inside out is halved.
 const HALVINGS: usize = 4;
 
-/// Phases of the interactions: finding what may meet, and deciding what acts, with what is found late.
+/// Phases of the interactions: the search for pairs, and the update of their states with pairs found late.
 const SEARCH: &str = "interactions: search";
 const STATES: &str = "interactions: states";
 
 /// Share of the tolerances that a linear solve may leave.
 const LEFT: f64 = 0.01;
 
-/// What the iterations of a step hand on to each other.
+/// Data that the iterations of a step hand on to each other.
 struct Step {
     /// Nodes that move before the mesh, see [`NewtonRaphson::moved_first`].
     moved_first: Option<Vec<u32>>,
@@ -40,7 +40,7 @@ struct Step {
     residual: Vec<f64>,
     references: References,
     records: Vec<IterationRecord>,
-    /// How multipliers may give way where constraints repeat each other, and how they do since one system was singular.
+    /// Regularisation of multipliers where constraints are redundant: the permitted amount, and the amount since a system was singular.
     relaxation: Option<f64>,
     relaxed: Option<f64>,
     /// Why the last search in a converged state found more.
@@ -53,8 +53,8 @@ struct Step {
 }
 
 impl Step {
-    /// The relative residual a linear solve may leave, so that what it leaves counts nothing beside the tolerances; none in
-    /// the first iteration, which may be the last.
+    /// The relative residual that a linear solve may leave, small beside the tolerances; none in the first iteration, which may be the
+    /// last.
     fn needed(&self) -> f64 {
         let missing = |check: &Check| {
             (check.ratio_tolerance / check.ratio).max(check.absolute_tolerance / check.absolute).min(1.0)
@@ -188,14 +188,14 @@ impl NewtonRaphson {
         let condition =
             if part.info.solver.condition_number { self.condition_number(part, system, monitor) } else { None };
         monitor.phase("states and residual");
-        // What is prescribed must be taken whole.
+        // Prescribed increments must be applied in full.
         let is_still = !has_motion(&part.ranks, &step.prescribed);
         let mut increment = self.take(&solved, step, part, system)?;
         if let Some(what) = self.first_infinite(part, system, &step.residual) {
             return Ok(Turn::Failed(format!("diverged in iteration {iteration}: {what}")));
         }
-        // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate
-        // serves for what the interactions take from it and nothing else.
+        // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate only serves the
+        // interactions that keep it.
         let restart =
             step.moved_first.is_some() && iteration == 1 && self.overshoots(part, system, &step.references.start[0])?;
         let change = self.decide(iteration, restart, step, part, system, Some(&mut increment).filter(|_| is_still))?;
@@ -311,7 +311,7 @@ impl NewtonRaphson {
         self.solve(part, system, &rhs)
     }
 
-    /// What a solve without a result means for the step.
+    /// Outcome of the step after a solve without a result.
     ///
     /// # Errors
     /// One that no shorter step would mend.
@@ -346,7 +346,7 @@ impl NewtonRaphson {
         }
     }
 
-    /// Moves by what was solved for and what is prescribed; gives the increment of all unknowns.
+    /// Applies the increments of solved and prescribed unknowns; returns the increment of all unknowns.
     fn take(&mut self, solved: &Solved, step: &mut Step, part: &mut ModelPart, system: &System) -> Result<Vec<f64>> {
         let mut increment = self.assembler.equations().expand(&solved.increment);
         let is_still = !has_motion(&part.ranks, &step.prescribed);
@@ -364,8 +364,9 @@ impl NewtonRaphson {
         Ok(increment)
     }
 
-    /// Lets the interactions follow the motion, and takes the residual of the state they decide on; `restart` where they only
-    /// keep what the answer takes from the first iterate. Where elements cannot be computed there, less is taken of `increment`, if it is given.
+    /// Lets the interactions follow the motion, and takes the residual of the state they decide on; `restart` where they only keep the
+    /// values that the solution takes from the first iterate. Where elements cannot be computed there, less is taken of `increment`, if
+    /// it is given.
     fn decide(
         &mut self,
         iteration: usize,
@@ -401,7 +402,7 @@ impl NewtonRaphson {
         Ok(change)
     }
 
-    /// Goes back by half of the increment, and by half of what is left, until elements can be computed; gives the residual there.
+    /// Goes back by half of the increment, and by half of the remainder, until elements can be computed; returns the residual there.
     ///
     /// # Errors
     /// `why` they could not be computed, where the least share does not help.
@@ -450,7 +451,7 @@ impl NewtonRaphson {
                 Outer::Done => {}
                 Outer::Again => accepted = false,
                 Outer::Widened(why) => {
-                    monitor.note(&format!("step {}: {why}; the iteration goes on with them", part.info.step));
+                    monitor.note(&format!("step {}: {why}; the iteration continues with them", part.info.step));
                     step.widened = Some(why);
                     accepted = false;
                 }
@@ -469,7 +470,7 @@ impl NewtonRaphson {
         Ok(Turn::On)
     }
 
-    /// The equations and patterns of what acts now.
+    /// The equations and sparsity patterns of the active interactions.
     fn lay_out(&mut self, part: &ModelPart, system: &System) -> Result<()> {
         let start = Instant::now();
         let result = self.assembler.begin_step(part, system);

@@ -1,4 +1,4 @@
-//! States that balance nothing: a body that nothing holds has gone out of all proportion to the model.
+//! Check of static states: a body without restraint moves out of all proportion to the model.
 
 use super::NewtonRaphson;
 use crate::assembly::{System, reach};
@@ -22,8 +22,8 @@ impl NewtonRaphson {
         let said = farthest.map(|(motion, node)| {
             let (id, at) = (part.nodes.ids[node as usize], whereabouts(part, node));
             format!(
-                "node {id}{at} has gone {motion:.1e} far, the model reaches {reach:.1e}: nothing holds its body; support it, or \
-                 check that contact holds it from the first step"
+                "node {id}{at} has moved by {motion:.1e}, beyond the bound {reach:.1e}: its body is not restrained; support it, or \
+                 check that contact restrains it from the first step"
             )
         });
         part.ranks.first_to_say(said)

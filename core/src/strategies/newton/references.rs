@@ -1,4 +1,4 @@
-//! What the residuals of a step are measured by: those at its start, as far as forces of its size explain them.
+//! Reference norms of the relative residual criterion: residuals at the start of the step, as far as forces of their size explain them.
 
 use super::super::criterion::{Block, norms};
 use super::NewtonRaphson;
@@ -6,8 +6,8 @@ use crate::assembly::{Distribution, System};
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
 
-/// Largest residual after the first solve, in forces at the start, that others are measured by. A first iterate may let a body
-/// go, and what it leaves then would make any later residual small.
+/// Largest residual after the first solve that serves as reference, relative to the forces at the start. A first iterate may open
+/// all contact of a body; its residual would make any later residual small.
 const LARGEST: f64 = 100.0;
 
 /// Residuals of a step that later ones are compared with.
@@ -17,7 +17,7 @@ pub(in crate::strategies) struct References {
     pub start: Vec<Vec<f64>>,
     /// After the last change of state.
     pub switched: Option<Vec<f64>>,
-    /// Sizes of the forces at the start by variable: loads, reactions and what is out of balance.
+    /// Sizes of the forces at the start by variable: loads, reactions and out-of-balance forces.
     forces: Vec<f64>,
 }
 

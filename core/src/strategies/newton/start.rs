@@ -1,4 +1,4 @@
-//! How a step of Newton's iteration begins: where prescribed values are, and what the first iterate is for.
+//! Start of a step of Newton's iteration: the positions of prescribed unknowns, and the use of the first iterate.
 
 use super::NewtonRaphson;
 use crate::assembly::{System, impose_constraints};
@@ -142,7 +142,7 @@ impl NewtonRaphson {
         increment
     }
 
-    /// What constrained unknowns lack to obey their constraints at the present values of the others.
+    /// Increment with which constrained unknowns obey their constraints at the present values of the others.
     pub(super) fn constraint_increment(&self, part: &mut ModelPart, system: &System) -> Vec<f64> {
         let before = self.assembler.values(part, system);
         impose_constraints(part);
@@ -154,7 +154,7 @@ impl NewtonRaphson {
     }
 }
 
-/// Nodes of elements that remember what they went through, ascending.
+/// Nodes of elements with a history, ascending.
 fn yielding(system: &System) -> Vec<u32> {
     let of_block = |block: &dyn EntityBlock| {
         let own = (0..block.len()).filter(|&at| block.remembers(at));

@@ -1,4 +1,4 @@
-//! The preconditioner: conditions first, then what is left, then the multipliers.
+//! The preconditioner: conditions first, then the reduced system, then the multipliers.
 
 use super::{Constrained, NONE};
 use crate::parallel;
@@ -6,8 +6,8 @@ use crate::system::System;
 use crate::vector::{self, CHUNK};
 
 impl Constrained {
-    /// Replaces the residual `r` of the whole system by an approximation of its solution; both are right at own equations.
-    /// `solve` does the same for what is left, own entries. Collective.
+    /// Replaces the residual `r` of the whole system by an approximation of its solution; both are right at own equations. `solve` does
+    /// the same for the reduced system, own entries. Collective.
     pub(crate) fn apply(&self, system: &System<'_>, solve: impl FnOnce(&mut [f64]), r: &mut [f64]) {
         self.ghosts.spread(r, 1);
         let mut z: Vec<f64> = vector::zeros(r.len());

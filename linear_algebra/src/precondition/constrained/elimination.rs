@@ -1,10 +1,10 @@
 //! The multipliers of one node: which of its motions they prescribe, and how they follow from its equations.
 //!
-//! Let `A` (d × m) be what the multipliers do to the equations of their node, `C` (m × d) what their conditions say of
-//! the node's unknowns and `E` (m × m) what these say of the multipliers, all brought to one size. Combinations of the
-//! conditions without multipliers, `N₀ E = 0`, prescribe motions: with `N₀ C = Y`, `Y Y⁺ = I` and `Y Z = 0` the unknowns are
-//! `Z t + Y⁺ (…)`. The rest of the conditions, `N₁`, and the node's equations give the multipliers, `R [A; N₁ E] = I`, and
-//! what knows nothing of them, `L [A; N₁ E] = 0`: one equation for each `t`, scaled to `L Z = I` on the node's own.
+//! Let `A` (d × m) be the coefficients of the multipliers in the equations of their node, `C` (m × d) those of the node's unknowns in
+//! the conditions, and `E` (m × m) those of the multipliers in the conditions, all brought to one size. Combinations of the conditions
+//! without multipliers, `N₀ E = 0`, prescribe motions: with `N₀ C = Y`, `Y Y⁺ = I` and `Y Z = 0` the unknowns are `Z t + Y⁺ (…)`. The
+//! rest of the conditions, `N₁`, and the node's equations give the multipliers, `R [A; N₁ E] = I`, and the equations without
+//! multipliers, `L [A; N₁ E] = 0`: one equation for each `t`, scaled to `L Z = I` on the node's own.
 
 use crate::dense_lu;
 
@@ -14,7 +14,7 @@ const PRESCRIBES: f64 = 0.03;
 /// Share of a column that must be left for it to be independent of those before it.
 const INDEPENDENT: f64 = 1e-8;
 
-/// What the multipliers of a node do, by rows.
+/// Action of the multipliers of a node, by rows.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct GroupElimination {
     /// Prescribed motions, a.
@@ -84,8 +84,8 @@ pub(super) fn eliminate([d, m]: [usize; 2], a: &[f64], c: &[f64], e: &[f64]) -> 
     Some(GroupElimination { prescribed, conditions, held, free, recovery, left })
 }
 
-/// `R` and `L` where the conditions alone give the multipliers, `λ = (N₁ E)⁻¹ …`: what is left is the node's stiffness with
-/// that of its penalty, symmetric where both are.
+/// `R` and `L` where the conditions alone give the multipliers, `λ = (N₁ E)⁻¹ …`: the reduced system has the node's stiffness with that
+/// of its penalty, symmetric where both are.
 fn by_compliance([d, m]: [usize; 2], a: &[f64], inverse: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let s = d + m;
     let (mut recovery, mut left) = (vec![0.0; m * s], vec![0.0; d * s]);

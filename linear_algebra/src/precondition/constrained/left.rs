@@ -1,4 +1,4 @@
-//! What is left of a system once its multipliers are gone, and how far it is from the system before.
+//! The reduced system without multipliers, and its distance from the system before.
 
 use std::sync::Arc;
 
@@ -32,11 +32,11 @@ fn add_multiple(sums: &mut [f64], value: f64, vector: &[f64]) {
     sums.iter_mut().zip(vector).for_each(|(sum, v)| *sum += value * v);
 }
 
-/// What the rows of a block are made in.
+/// Work space in which the rows of a block are made.
 struct Scratch {
     /// Equations with the row of the block that they are added to, and their factor in it.
     terms: Vec<(u32, usize, f64)>,
-    /// Of one equation in each row of the block.
+    /// Factor of one equation in each row of the block.
     factors: Vec<f64>,
     /// Entries of the rows at each equation.
     sums: Sums,
@@ -45,7 +45,7 @@ struct Scratch {
 }
 
 impl Constrained {
-    /// Factors of the equations in what gives a multiplier.
+    /// Factors of the equations in the recovery of a multiplier.
     fn recovery(&self, multiplier: u32) -> Vec<(u32, f64)> {
         let group = &self.groups[self.group_of[multiplier as usize] as usize];
         let at = group.slot_of_multiplier(multiplier);
@@ -92,7 +92,7 @@ impl Constrained {
         if largest > 0.0 { largest } else { 1.0 }
     }
 
-    /// What is left, the matrix over its largest diagonal entry; `earlier` is of the same bulk. Collective.
+    /// The reduced system, its matrix over its largest diagonal entry; `earlier` is of the same bulk. Collective.
     pub(crate) fn left_blocks(&self, system: &System<'_>, earlier: Option<&Blocks>) -> Blocks {
         let earlier = earlier.filter(|_| self.blocks.processes().is_none());
         let largest = earlier.map_or_else(|| self.largest_diagonal(system), |earlier| earlier.size);
@@ -199,7 +199,7 @@ impl Constrained {
                         entries.iter_mut().zip(values).for_each(|(to, value)| *to += (value * inverse) as f32);
                     }
                 });
-                // What stands at unknowns of groups goes to what they follow.
+                // Entries at unknowns of groups go to the unknowns that these follow.
                 met.drain(|group, values| {
                     for (block, factors) in &self.groups[group as usize].followed {
                         let entries = row.block(*block);

@@ -1,16 +1,16 @@
 //! Multigrid for systems with multipliers: these leave by the constraints themselves.
 //!
-//! Let the multipliers of a node act on its own equations and else on those of masters, as dual multipliers do. Then
-//! ([`elimination`]) the conditions that hold no multiplier prescribe some motions of the node, `u = T û + u_p`, its equations
-//! give its multipliers, and what is left of them is one equation for each motion that is not prescribed: `L K T û`.
-//! For symmetric systems without friction `L = Tᵀ`, and the matrix stays symmetric and positive definite. Each node keeps
-//! its number of unknowns: those prescribed become equations of their own on the diagonal, so that blocks stay of one size.
+//! Let the multipliers of a node act on its own equations and else on those of masters, as dual multipliers do. Then ([`elimination`])
+//! the conditions that hold no multiplier prescribe some motions of the node, `u = T û + u_p`, its equations give its multipliers, and
+//! one reduced equation remains for each motion that is not prescribed: `L K T û`. For symmetric systems without friction `L = Tᵀ`, and
+//! the matrix stays symmetric and positive definite. Each node keeps its number of unknowns: those prescribed become equations of their
+//! own on the diagonal, so that blocks stay of one size.
 //!
-//! Processes that share a system do this for the nodes with multipliers of their own and for those beside their rows, whose
-//! rows they have, too; so each makes its own rows of the blocks, and what is left to exchange are vectors.
+//! Ranks that share a system do this for the nodes with multipliers of their own and for those beside their rows, whose rows they have,
+//! too. So each makes its own rows of the blocks, and only vectors are exchanged.
 //!
-//! This is a preconditioner of the whole system: what it leaves out, such as entries of multipliers on other nodes with
-//! multipliers, costs iterations and no accuracy.
+//! This is a preconditioner of the whole system: neglected entries, such as those of multipliers on other nodes with multipliers, cost
+//! iterations and no accuracy.
 
 mod apply;
 mod elimination;
@@ -154,7 +154,7 @@ impl Constrained {
         for i in (0..layout.equations()).filter(|&i| is_here(i)) {
             of_node.entry(layout.node[i]).or_default().push(i as u32);
         }
-        // What follows from conditions alone, what nothing here determines, and the group of the rest.
+        // Multipliers that conditions alone determine, multipliers that nothing here determines, and the group of the rest.
         type Found = (Vec<(u32, f64, f64)>, Vec<u32>, Option<Result<Group, usize>>);
         let find = |(node, multipliers): &(u32, Vec<u32>)| -> Found {
             let own: Vec<u32> = match block[*node as usize] {
@@ -196,7 +196,7 @@ impl Constrained {
         }
         for m in lone {
             if self.ghosts.processes().is_some() {
-                // What carries it depends on what carries others, which may be elsewhere.
+                // Its carrier depends on the carriers of others, which may be on other ranks.
                 return Err(m as usize);
             }
             let (master, action) = self.carrier(system, m).ok_or(m as usize)?;
@@ -264,7 +264,7 @@ impl Constrained {
         })
     }
 
-    /// What links groups with the rest: unknowns of masters in conditions, multipliers in the equations of masters.
+    /// Links between groups and the rest: unknowns of masters in conditions, multipliers in the equations of masters.
     fn find_neighbours(&mut self, system: &System<'_>) {
         let is_own = |e: usize| self.group_of[e] != NONE && !system.layout.multiplier[e];
         let of_group = |group: &Group| {
@@ -285,7 +285,7 @@ impl Constrained {
             rows
         };
         let all: Vec<Vec<Vec<(u32, f64)>>> = parallel::map(self.groups.len(), 16, |at| of_group(&self.groups[at]));
-        // Patterns are symmetric: what stands in a column stands in the row, too.
+        // Patterns are symmetric: an entry of a column is also one of the row.
         let near = |of: fn(&Group) -> &[u32]| -> Vec<u32> {
             let mut is_near = vec![false; system.equations()];
             for &row in self.groups.iter().flat_map(of) {
@@ -313,7 +313,7 @@ impl Constrained {
         (self.loads, self.beside) = (loads, beside);
     }
 
-    /// What the unknowns of groups follow.
+    /// Unknowns that the unknowns of groups follow.
     fn find_follows(&mut self) {
         let (place, w) = (&self.place, self.width);
         parallel::each_mut(&mut self.groups, 16, |_, group| {
@@ -338,7 +338,7 @@ impl Constrained {
         });
     }
 
-    /// What each group of this process prescribes: its first unknown and how many motions.
+    /// Motions prescribed by each group of this rank: its first unknown and how many motions.
     pub(crate) fn prescribed(&self) -> Vec<(u32, u32)> {
         let is_own = self.ghosts.is_own();
         let own = self.groups.iter().filter(|group| is_own[group.own[0] as usize]);
@@ -387,7 +387,7 @@ impl Constrained {
         bodies
     }
 
-    /// The hierarchy of what is left; collective.
+    /// The hierarchy of the reduced system; collective.
     pub(crate) fn hierarchy(&self, system: &System<'_>, left: &Blocks) -> Multigrid {
         Multigrid::new(
             left.matrix.clone(),

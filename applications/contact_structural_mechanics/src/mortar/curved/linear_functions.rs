@@ -31,7 +31,7 @@ pub(super) fn linear_functions<T: Real>(shape: &FacetShape, piece: &[usize], xi:
     }
 }
 
-/// L of all nodes of a slave at one of its points: the share of the point that each node has. Of a slave of first order its
+/// L of all nodes of a slave at one of its points: the share of the point that each node has. For a slave of first order these are its
 /// shape functions.
 pub fn nodal_shares<T: Real>(shape: &FacetShape, point: &OverlapPoint<T>) -> Nodal<T> {
     if !shape.curved {

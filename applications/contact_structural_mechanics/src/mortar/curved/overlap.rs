@@ -8,12 +8,12 @@ use super::surface_points::SurfacePoints;
 pub struct PairPoints(Option<SurfacePoints>);
 
 impl PairPoints {
-    /// Those of a pair.
+    /// Overlap of a pair.
     pub fn new(pair: &PairGeometry<f64>, settings: &SegmentationSettings) -> Self {
         Self((pair.is_curved() && pair.space() == 3).then(|| SurfacePoints::new(pair, settings)))
     }
 
-    /// Those of surfaces.
+    /// Points of surfaces.
     pub(super) fn of_surfaces(&self) -> Option<&SurfacePoints> {
         self.0.as_ref()
     }

@@ -17,7 +17,7 @@ pub(super) struct PieceIntegrals<T: Real> {
 }
 
 impl<T: Real> PieceIntegrals<T> {
-    /// Those of a sub-facet without overlap.
+    /// Integrals of a sub-facet without overlap.
     pub(super) fn zero(slave: &'static FacetShape, master: &FacetShape, piece: usize) -> Self {
         let zero = T::zero();
         Self {

@@ -8,7 +8,7 @@ use zelus_core::geometry::{MOST_FACET_NODES, Nodal, interpolate};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{cross, dot, norm, scale, sub, value};
 
-/// A pair in a scalar with derivatives, with what all its points share.
+/// A pair in a scalar with derivatives, with the data that all its points share.
 pub(super) struct SurfaceMotion<'a, T: Real> {
     pair: &'a PairGeometry<T>,
     found: &'a SurfacePoints,
@@ -71,7 +71,7 @@ fn motion<T: Real, const C: usize>(x: [T; C]) -> [T; C] {
 }
 
 impl<'a, T: Real> SurfaceMotion<'a, T> {
-    /// That of a pair whose points have been found on its values.
+    /// Motion of a pair whose points have been found on its values.
     pub(super) fn new(pair: &'a PairGeometry<T>, found: &'a SurfacePoints) -> Self {
         let plane = Plane::new(pair);
         let values = pair.values();

@@ -123,7 +123,7 @@ pub(super) fn area_of_cell<T: Real>([a, b, c]: &[[T; 2]; 3]) -> T {
 }
 
 impl SurfacePoints {
-    /// Those of a pair.
+    /// Points of a pair.
     pub(super) fn new(pair: &PairGeometry<f64>, settings: &SegmentationSettings) -> Self {
         let mut out = Self::default();
         let plane = Plane::new(pair);

@@ -25,7 +25,7 @@ pub(super) struct Point<'a, const NODES: usize, const DIM: usize, const S: usize
     pub(super) excess: [[f64; DIM]; NODES],
     /// Volume on the formulation's configuration that the point stands for.
     pub(super) weight: f64,
-    /// Strain, deformation gradient and what the law remembers.
+    /// Strain, deformation gradient and history of the law.
     pub(super) state: StrainState<'a, S>,
 }
 
@@ -73,7 +73,7 @@ pub(super) fn radius<const NODES: usize>(n: &[f64; NODES], x: &[[f64; 3]; NODES]
 impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid<F, NODES, DIM, S> {
     pub(in crate::elements) const AXISYMMETRIC: bool = S == 4 && !F::MEAN_DILATATION;
 
-    /// What the formulation reads of the motion of the nodes.
+    /// Motion of the nodes, as the formulation reads it.
     pub(super) fn motion(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Motion<NODES> {
         let (material, as_kratos) = (self.material(entity), view.info.has(BANDS_AS_KRATOS));
         let width = if material.law.softens() { band::width(material.rule, &entity.initial, as_kratos) } else { 0.0 };
