@@ -31,7 +31,10 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
     warn_of_contradictions(part, processes, [middle, schedule.end_time], &mut problems);
     if matches!(solver.scheme()?, TimeScheme::Implicit(scheme) if scheme.is_static()) && part.info.step == 0 {
         tell_what_holds(part, system, &prescriptions(part, processes, middle), &mut problems);
-        warn_of_no_load(part, system, processes, &mut problems);
+        // Later stages may release what earlier ones have loaded.
+        if schedule.start_time <= 0.0 {
+            warn_of_no_load(part, system, processes, &mut problems);
+        }
     }
     problems_of_all(&model.ranks, problems)?.finish()
 }
