@@ -73,6 +73,25 @@ fn a_model_that_nothing_loads_is_named() {
 }
 
 #[test]
+fn gravity_and_inertia_without_density_are_named() {
+    let scratch = scratch_copy(&root().join("tests/cases/structural/self_weight"));
+    let whole = said(&zelus(scratch.path(), &["check", DECK]));
+    assert!(!whole.contains("acts-on-nothing"), "{whole}");
+    let path = scratch.path().join("StructuralMaterials.json");
+    let mut materials = read_json(&path).expect("materials");
+    for own in materials["properties"].as_array_mut().expect("a list") {
+        own["Material"]["Variables"].as_object_mut().expect("variables").remove("DENSITY");
+    }
+    std::fs::write(&path, materials.to_string()).expect("a file");
+    let without = said(&zelus(scratch.path(), &["check", DECK]));
+    let fact = "VOLUME_ACCELERATION by assign_vector_by_direction_process on Structure.Body acts on nothing: property 1 has no DENSITY";
+    assert!(without.contains("warning[acts-on-nothing]") && without.contains(fact), "{without}");
+    let dynamic = ["solver_settings.solver_type=Dynamic", "solver_settings.scheme_type=newmark"];
+    let dynamic = said(&zelus(scratch.path(), &["check", DECK, "--set", dynamic[0], "--set", dynamic[1]]));
+    assert!(dynamic.contains("warning[no-mass]"), "{dynamic}");
+}
+
+#[test]
 fn contact_that_no_step_meets_is_named() {
     let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
     let path = scratch.path().join(DECK);

@@ -38,6 +38,20 @@ fn defaults_lie_in_their_ranges() {
 }
 
 #[test]
+fn gaps_of_an_adapted_penalty_in_the_other_order_are_refused() {
+    for (adapts, code) in [(true, Some(2)), (false, Some(0))] {
+        let (found, said) = told(PRESSED, DECK, &["check", DECK], &|deck| {
+            deck["solver_settings"]["contact_settings"]["mortar_type"] = json!("PenaltyContactFrictionless");
+            deck["processes"]["contact_process_list"][0]["python_module"] = json!("penalty_contact_process");
+            contact(deck)["advance_ALM_parameters"] =
+                json!({"adapt_penalty": adapts, "min_gap_factor": 1e-2, "max_gap_factor": 1e-3});
+        });
+        assert_eq!(found, code, "{said}");
+        assert_eq!(said.contains("error[out-of-range]") && said.contains("min_gap_factor"), adapts, "{said}");
+    }
+}
+
+#[test]
 fn settings_out_of_range_are_refused() {
     for (key, value) in [
         ("zero_tolerance_factor", 0.0),

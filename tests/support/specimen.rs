@@ -136,7 +136,8 @@ impl Specimen {
         load(&mut part, entry, loads);
         let make = block_factory(entry).expect("only kinds with a block are walked");
         let table = if entry.role == Role::Element { &part.elements } else { &part.conditions };
-        let request = BlockRequest { entry, members: vec![0], table, nodes: &part.nodes, part: &part };
+        let request =
+            BlockRequest { entry, members: vec![0], table, nodes: &part.nodes, part: &part, on_initial: false };
         let mut block = make(&request).map_err(|problem| problem.to_string())?;
         block.initialize(&part.view()).map_err(|problem| problem.to_string())?;
         let mut specimen = Self { part, block, entry };

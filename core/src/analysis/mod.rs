@@ -6,6 +6,7 @@
 //! stages one after another on one model.
 
 mod bodies;
+mod body_loads;
 mod checkpoints;
 mod cutting;
 mod deck;

@@ -63,6 +63,12 @@ macro_rules! entity_entry {
                 self
             }
 
+            /// Nodal variable of its body load, and the property that it multiplies.
+            pub const fn body_load(mut self, body_load: (&'static str, &'static str)) -> Self {
+                self.kind.body_load = Some(body_load);
+                self
+            }
+
             /// Variables of its data by which it loads the model.
             pub const fn loads(mut self, loads: &'static [&'static str]) -> Self {
                 self.kind.loads = Some(loads);

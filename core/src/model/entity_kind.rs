@@ -41,6 +41,8 @@ pub struct EntityKind {
     pub of_revolution: bool,
     /// Whether it is a piece of a body of small displacements: equilibrium is that of the initial configuration.
     pub small_displacement: bool,
+    /// Nodal variable of its body load, e.g. an acceleration, and the property that it multiplies, e.g. the density.
+    pub body_load: Option<(&'static str, &'static str)>,
     /// Variables with history that its nodes have: name and number of components.
     pub nodal: &'static [(&'static str, usize)],
     /// Variables of its data by which it loads the model; `None` where that is not stated.
@@ -51,7 +53,17 @@ impl EntityKind {
     /// A kind on no cell.
     pub const fn new(role: Role, entry: Entry) -> Self {
         let (of_revolution, small_displacement) = (false, false);
-        Self { entry, role, cell: None, space: 0, of_revolution, small_displacement, nodal: &[], loads: None }
+        Self {
+            entry,
+            role,
+            cell: None,
+            space: 0,
+            of_revolution,
+            small_displacement,
+            body_load: None,
+            nodal: &[],
+            loads: None,
+        }
     }
 
     /// Number of its nodes; 0 without a cell.

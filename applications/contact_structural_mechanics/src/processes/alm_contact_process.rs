@@ -155,6 +155,7 @@ fn interaction(
     formulations: &FormulationStem,
 ) -> Result<(String, ContactInteraction)> {
     let whole: ContactKeys = settings.parse()?;
+    check_gaps_of_adaptation(settings, &whole.parameters)?;
     let (stem, updated) = match whole.contact_type.strip_suffix("WithNormalUpdate") {
         Some(stem) => (stem, true),
         None => (whole.contact_type.as_str(), false),
@@ -312,6 +313,20 @@ fn explicit_penalty(settings: &Settings, request: &ProcessRequest<'_>) -> Result
     let most = settings.get_f64("advance_explicit_parameters.max_gap_factor")?;
     let exponent = settings.get_f64("advance_explicit_parameters.logistic_exponent_factor")?;
     Ok(Some(ExplicitPenalty { most, exponent, gap }))
+}
+
+/// The gap below which an adapted penalty falls must be smaller than that above which it grows.
+///
+/// # Errors
+/// A penalty that is adapted between gaps in the other order.
+fn check_gaps_of_adaptation(settings: &Settings, keys: &PenaltyKeys) -> Result<()> {
+    let Some(least) = keys.min_gap_factor.filter(|least| keys.adapt_penalty && *least >= keys.max_gap_factor) else {
+        return Ok(());
+    };
+    let key = "advance_ALM_parameters.min_gap_factor";
+    let fact = format!("\"min_gap_factor\" is {least}, \"max_gap_factor\" {}", keys.max_gap_factor);
+    let remedy = "write a \"min_gap_factor\" below \"max_gap_factor\": the penalty falls below the one, and grows above the other";
+    Err(settings.error(key, "out-of-range", fact).remedy(remedy).into())
 }
 
 /// Refuses a use that the formulation is not made for.

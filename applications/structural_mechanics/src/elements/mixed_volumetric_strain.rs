@@ -303,6 +303,7 @@ macro_rules! register_mixed {
             source: $source,
             cell: zelus_core::geometry::Shape::of($dim, $nodes),
             space: $dim,
+            body_load: ("VOLUME_ACCELERATION", "DENSITY"),
             small_displacement: !<$form as $crate::elements::VolumetricForm>::FINITE,
             nodal: &[("VOLUMETRIC_STRAIN", 1)],
             build: zelus_core::entities::Build::Block(zelus_core::entities::KernelBlock::<

@@ -56,6 +56,7 @@ macro_rules! register_solids {
             source: $source,
             cell: zelus_core::geometry::Shape::of($dim, $nodes),
             space: $dim,
+            body_load: ("VOLUME_ACCELERATION", "DENSITY"),
             small_displacement: !<$formulation as $crate::elements::Formulation>::FINITE,
             of_revolution: $crate::elements::Solid::<$formulation, $nodes, $dim, $strains>::AXISYMMETRIC,
             build: zelus_core::entities::Build::Block(zelus_core::entities::KernelBlock::<

@@ -1,6 +1,7 @@
 //! Last phase of a stage's preparation: the stage as built is checked, before its first step.
 
 use super::super::bodies::tell_what_holds;
+use super::super::body_loads::{warn_of_body_loads, warn_of_no_inertia};
 use super::super::no_load::warn_of_no_load;
 use super::super::solver::TimeScheme;
 use super::super::soundness::{prescriptions, warn_of_contradictions, warn_of_loads_given_twice, warn_of_twins};
@@ -28,8 +29,13 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
     let middle = 0.5 * (schedule.start_time + schedule.end_time);
     warn_of_twins(part, &mut problems);
     warn_of_loads_given_twice(part, processes, &mut problems);
+    warn_of_body_loads(part, processes, &mut problems);
     warn_of_contradictions(part, processes, [middle, schedule.end_time], &mut problems);
-    if matches!(solver.scheme()?, TimeScheme::Implicit(scheme) if scheme.is_static()) && part.info.step == 0 {
+    let is_static = matches!(solver.scheme()?, TimeScheme::Implicit(scheme) if scheme.is_static());
+    if !is_static && part.info.step == 0 {
+        warn_of_no_inertia(part, &mut problems);
+    }
+    if is_static && part.info.step == 0 {
         tell_what_holds(part, system, &prescriptions(part, processes, middle), &mut problems);
         // Later stages may release what earlier ones have loaded.
         if schedule.start_time <= 0.0 {
