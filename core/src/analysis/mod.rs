@@ -7,6 +7,7 @@
 
 mod bodies;
 mod checkpoints;
+mod coincident_nodes;
 mod cutting;
 mod deck;
 mod driver;

@@ -23,6 +23,7 @@ use crate::entities::Interaction;
 use crate::io::{FileUse, Mark, check_files};
 use crate::model::{Model, ModelPart};
 use crate::parameters::Node;
+use crate::partition::{Surface, surfaces};
 use crate::processes::Process;
 use crate::strategies::{Monitor, SolutionStrategy, unknowns_of_all};
 
@@ -43,6 +44,8 @@ pub(super) struct BuiltStage {
     pub system: System,
     /// The solution strategy.
     pub strategy: Box<dyn SolutionStrategy>,
+    /// Surfaces that processes of the deck couple, pair by pair.
+    pub surfaces: Vec<Surface>,
     /// Processes in the order in which they act.
     pub processes: Vec<Box<dyn Process>>,
     /// Files that it reads and writes.
@@ -90,8 +93,19 @@ impl BuiltStage {
         run.monitor.note(&says);
         run.report.linear_solver = says;
         run.report.sizes = sizes_of(part, &system);
-        let (name, warnings) = (stage.name.clone(), problems);
-        Ok(Self { name, root, schedule, solver, system, strategy, processes, files, warnings })
+        let (name, warnings, surfaces) = (stage.name.clone(), problems, surfaces(&deck, part));
+        Ok(Self {
+            name,
+            root,
+            schedule,
+            solver,
+            system,
+            strategy,
+            surfaces,
+            processes,
+            files,
+            warnings,
+        })
     }
 }
 
