@@ -11,6 +11,7 @@ mod coincident_nodes;
 mod cutting;
 mod deck;
 mod driver;
+mod large_motion;
 mod like;
 mod mesh;
 mod no_load;

@@ -29,6 +29,8 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
         problem.into_iter().for_each(|problem| problems.push(problem));
     }
     let middle = 0.5 * (schedule.start_time + schedule.end_time);
+    let of_blocks = system.elements.iter().chain(&system.conditions).flat_map(|block| block.warnings());
+    of_blocks.for_each(|warning| problems.push(warning.clone()));
     warn_of_collapsed(part, &mut problems);
     warn_of_twins(part, &mut problems);
     warn_of_coincident_nodes(part, surfaces, &mut problems);

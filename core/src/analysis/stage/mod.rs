@@ -19,11 +19,12 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::driver::{Driver, Point};
+use super::large_motion::LargeMotion;
 use super::report::RunReport;
 use super::saved_run::{SavedStage, hand_out, resume_blocks, states_of};
 use crate::assembly::System;
 use crate::communication::Ranks;
-use crate::diagnostics::{Report, Result, unfit};
+use crate::diagnostics::{Diagnostic, Report, Result, unfit};
 use crate::io::{Claim, FileUse};
 use crate::model::Model;
 use crate::processes::{Process, largest_results};
@@ -51,6 +52,8 @@ pub(super) struct Stage {
     strategy: Box<dyn SolutionStrategy>,
     processes: Vec<Box<dyn Process>>,
     files: Vec<FileUse>,
+    /// Largest displacement and strain of the accepted steps.
+    largest: LargeMotion,
     /// The outputs that no other run may write meanwhile; `None` before the first step.
     claims: Option<Vec<Claim>>,
     begun: bool,
@@ -90,6 +93,7 @@ impl Stage {
             strategy,
             processes,
             files,
+            largest: LargeMotion::default(),
             claims: None,
             begun: false,
         }
@@ -195,7 +199,9 @@ impl Stage {
                     .note(&format!("{ends}: \"last_step\": \"shortened\" in \"time_stepping\" would end it there"));
             }
             let last = self.system.interactions.iter().flat_map(|interaction| interaction.last_messages(part));
-            let last = last.chain(self.strategy.last_messages(part)).collect();
+            let mut last: Vec<Diagnostic> = last.chain(self.strategy.last_messages(part)).collect();
+            self.largest.see(part, &self.system);
+            last.extend(self.largest.warnings(part));
             tell(part.ranks.problems_of_all(last), run.report, run.monitor);
             return Ok(false);
         }
