@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use zelus_linear_algebra::State;
 
 use super::prescription::{Load, Prescription};
+use super::time_table::TimeTable;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::Interaction;
@@ -151,6 +152,11 @@ pub trait Process: Send {
     /// The state of another kind of process; a file that is no longer there.
     fn resume(&mut self, _model: &mut Model, _state: Box<dyn State>) -> Result<()> {
         Ok(())
+    }
+
+    /// Tables over time that it reads from files of its own.
+    fn time_tables(&self) -> Vec<TimeTable> {
+        Vec::new()
     }
 
     /// After the last step, also when a step failed (Kratos: `ExecuteFinalize`).

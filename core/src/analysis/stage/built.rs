@@ -22,9 +22,9 @@ use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::Interaction;
 use crate::io::{FileUse, Mark, check_files};
 use crate::model::{Model, ModelPart};
-use crate::parameters::Node;
+use crate::parameters::{Interval, Node};
 use crate::partition::{Surface, surfaces};
-use crate::processes::Process;
+use crate::processes::{Process, TimeTable, time_tables_of};
 use crate::strategies::{Monitor, SolutionStrategy, unknowns_of_all};
 
 /// Bytes that a node takes in a picture at least: its displacement, compressed.
@@ -46,6 +46,8 @@ pub(super) struct BuiltStage {
     pub strategy: Box<dyn SolutionStrategy>,
     /// Surfaces that processes of the deck couple, pair by pair.
     pub surfaces: Vec<Surface>,
+    /// Tables over time that its processes read.
+    pub tables: Vec<TimeTable>,
     /// Processes in the order in which they act.
     pub processes: Vec<Box<dyn Process>>,
     /// Files that it reads and writes.
@@ -94,6 +96,8 @@ impl BuiltStage {
         run.report.linear_solver = says;
         run.report.sizes = sizes_of(part, &system);
         let (name, warnings, surfaces) = (stage.name.clone(), problems, surfaces(&deck, part));
+        let mut tables: Vec<TimeTable> = processes.iter().flat_map(|process| process.time_tables()).collect();
+        deck.get("processes").into_iter().for_each(|lists| time_tables_of(lists, Interval::ALWAYS, &mut tables));
         Ok(Self {
             name,
             root,
@@ -102,6 +106,7 @@ impl BuiltStage {
             system,
             strategy,
             surfaces,
+            tables,
             processes,
             files,
             warnings,

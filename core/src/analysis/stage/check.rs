@@ -17,7 +17,7 @@ use crate::model::Model;
 /// # Errors
 /// Contradictions of processes, loads and supports, and other problems that they find, gathered.
 pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>> {
-    let BuiltStage { root, schedule, solver, system, processes, surfaces, .. } = built;
+    let BuiltStage { root, schedule, solver, system, processes, surfaces, tables, .. } = built;
     let mut problems = built.warnings.clone();
     for process in processes {
         let checked = process.check(model, system, &mut problems);
@@ -29,6 +29,8 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
         problem.into_iter().for_each(|problem| problems.push(problem));
     }
     let middle = 0.5 * (schedule.start_time + schedule.end_time);
+    let early = tables.iter().filter_map(|table| table.ends_early(schedule.interval()));
+    early.for_each(|problem| problems.push(problem));
     let of_blocks = system.elements.iter().chain(&system.conditions).flat_map(|block| block.warnings());
     of_blocks.for_each(|warning| problems.push(warning.clone()));
     warn_of_collapsed(part, &mut problems);
