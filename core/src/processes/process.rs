@@ -251,6 +251,8 @@ registered_kind! {
         build: ProcessFactory;
         /// Keys whose parts, or nodes by id, every rank must have whole where several share a mesh.
         common: &'static [&'static str] = &[],
+        /// Word for what it puts between its surfaces that must be there once only, e.g. "contact"; empty where it puts nothing.
+        puts: &'static str = "",
         /// The surfaces that may touch by its doing, as its `Parameters` name them where the deck gives them.
         surfaces: fn(Option<&Node>) -> Vec<NamedSurface> = |_| Vec::new(),
     }
