@@ -8,6 +8,7 @@
 mod bodies;
 mod checkpoints;
 mod coincident_nodes;
+mod contents;
 mod cutting;
 mod deck;
 mod driver;

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{State, Unknowns};
 
+use super::contents::Contents;
 use super::deck::StageDeck;
 use super::rank_layout::RankLayout;
 use super::report::RunReport;
@@ -48,6 +49,8 @@ pub(super) struct SavedRun<M, R> {
 #[derive(Serialize, Deserialize)]
 pub(super) struct SavedStage {
     pub begun: bool,
+    /// Digests of the files that it has read beside deck and mesh.
+    pub contents: Contents,
     pub first_length: Option<f64>,
     /// Layout of the unknowns to which the states of the strategy refer.
     pub unknowns: Unknowns,

@@ -22,7 +22,7 @@ const MARK: &str = "zelus saved run\n";
 /// How a saved run is known.
 pub(crate) const SAVED: Mark = Mark::Begins(&[MARK]);
 /// Version of the contents: one more with every change of the saved data.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 /// Bytes before the lengths.
 const HEAD: usize = MARK.len() + 4 + 4;
 /// Bytes of the head for each rank: length and checksum.

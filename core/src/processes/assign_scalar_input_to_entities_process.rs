@@ -192,6 +192,10 @@ impl Process for AssignScalarInput {
         vec![FileUse::Reads(self.file.clone())]
     }
 
+    fn decisive_files(&self) -> Vec<PathBuf> {
+        vec![self.file.clone()]
+    }
+
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root(&self.target.path)?;
         let selection = self.target.selection(&part.tree)?;

@@ -185,6 +185,11 @@ pub trait Process: Send {
         Vec::new()
     }
 
+    /// Those of the files that it reads whose content decides results.
+    fn decisive_files(&self) -> Vec<std::path::PathBuf> {
+        Vec::new()
+    }
+
     /// Files or folders a user would open, for the last lines of the program.
     fn outputs(&self) -> Vec<std::path::PathBuf> {
         Vec::new()

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use zelus_linear_algebra::memory;
 
+use super::super::contents::Contents;
 use super::super::deck::{Folders, make_processes};
 use super::super::report::Sizes;
 use super::super::sharing::read_the_same_files;
@@ -52,6 +53,8 @@ pub(super) struct BuiltStage {
     pub processes: Vec<Box<dyn Process>>,
     /// Files that it reads and writes.
     pub files: Vec<FileUse>,
+    /// Digests of those it reads that decide results, beside deck and mesh.
+    pub contents: Contents,
     /// Notes and warnings found so far.
     pub warnings: Report,
 }
@@ -69,7 +72,7 @@ impl BuiltStage {
         outputs: &[PathBuf],
         run: &mut RunContext<'_>,
     ) -> Result<Self> {
-        let SharedStage { parsed, is_whole, inputs } = shared;
+        let SharedStage { parsed, is_whole, inputs, mut contents } = shared;
         let ParsedStage { stage, deck, solver, root, schedule, mut problems, .. } = parsed;
         let ranks = run.model.ranks.clone();
         let mut processes = make_processes(&deck, folders, run.model, run.driver, &mut problems);
@@ -85,6 +88,8 @@ impl BuiltStage {
         messages_of(&mut processes, &mut system).into_iter().for_each(|message| problems.push(message));
         let mut files: Vec<FileUse> = processes.iter().flat_map(|process| process.files()).collect();
         read_the_same_files(&ranks, &files)?;
+        contents.extend(processes.iter().flat_map(|process| process.decisive_files()));
+        let contents = Contents::of(&contents, &folders.deck);
         files.extend(inputs);
         run.report.inputs = files.iter().filter_map(FileUse::input).map(Path::to_owned).collect();
         files.extend(outputs.iter().cloned().map(|path| FileUse::Writes(path, Mark::None)));
@@ -110,6 +115,7 @@ impl BuiltStage {
             tables,
             processes,
             files,
+            contents,
             warnings,
         })
     }

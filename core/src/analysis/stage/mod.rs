@@ -18,6 +18,7 @@ mod shared;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use super::contents::Contents;
 use super::driver::{Driver, Point};
 use super::large_motion::LargeMotion;
 use super::report::RunReport;
@@ -52,6 +53,8 @@ pub(super) struct Stage {
     strategy: Box<dyn SolutionStrategy>,
     processes: Vec<Box<dyn Process>>,
     files: Vec<FileUse>,
+    /// Digests of what it has read beside deck and mesh.
+    contents: Contents,
     /// Largest displacement and strain of the accepted steps.
     largest: LargeMotion,
     /// The outputs that no other run may write meanwhile; `None` before the first step.
@@ -83,7 +86,7 @@ impl Stage {
 
     /// A stage before its first step.
     fn new(built: BuiltStage) -> Self {
-        let BuiltStage { name, root, schedule, system, strategy, processes, files, .. } = built;
+        let BuiltStage { name, root, schedule, system, strategy, processes, files, contents, .. } = built;
         Self {
             name,
             root,
@@ -93,6 +96,7 @@ impl Stage {
             strategy,
             processes,
             files,
+            contents,
             largest: LargeMotion::default(),
             claims: None,
             begun: false,
@@ -146,6 +150,7 @@ impl Stage {
     pub(super) fn state(&self) -> SavedStage {
         SavedStage {
             begun: self.begun,
+            contents: self.contents.clone(),
             first_length: self.first_length,
             unknowns: self.system.dofs.layout(),
             strategy: self.strategy.state(),
@@ -161,6 +166,7 @@ impl Stage {
     /// # Errors
     /// States of another deck; files of output that are not there any more.
     pub(super) fn resume(&mut self, model: &mut Model, state: SavedStage) -> Result<()> {
+        self.contents.check(&state.contents)?;
         (self.begun, self.first_length) = (state.begun, state.first_length);
         let part = model.root_mut(&self.root)?;
         let begins = !self.begun || part.info.time >= self.schedule.start_time && part.info.time.is_finite();
