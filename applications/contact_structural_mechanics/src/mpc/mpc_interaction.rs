@@ -20,6 +20,7 @@ use zelus_structural_mechanics::variables::{NORMAL, REACTION};
 
 use super::mpc_friction::{MpcFriction, reaction};
 use super::mpc_kind::MpcKind;
+use super::mpc_results::write_results;
 use super::mpc_settings::{MpcSettings, require_slaves_of_first_order};
 use super::node_relation::{FollowingComponents, NodeRelation, can_follow};
 use super::relations::Relations;
@@ -386,6 +387,8 @@ impl Interaction for MpcInteraction {
         if self.acting {
             self.in_contact.accept(&self.slaves_by_interface(), &self.states);
         }
+        let sticks = self.settings.kind == MpcKind::Frictional || self.settings.ties();
+        write_results(part, &mut self.states, &self.relations.nodes, &self.friction, sticks);
         Ok(())
     }
 
