@@ -87,8 +87,9 @@ impl LoadedRun {
 }
 
 /// Settings that may be others when a run goes on: by them it runs on, or says less.
-const FREE: [&str; 4] = [
+const FREE: [&str; 5] = [
     "problem_data.end_time",
+    "problem_data.autosave_minutes",
     "problem_data.echo_level",
     "problem_data.parallel_type",
     // The contents of the mesh are compared themselves.

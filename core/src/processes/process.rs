@@ -141,6 +141,11 @@ pub trait Process: Send {
         None
     }
 
+    /// Whether it is there to save the run now and then.
+    fn saves_runs(&self) -> bool {
+        false
+    }
+
     /// State between steps, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None

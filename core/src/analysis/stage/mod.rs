@@ -146,6 +146,11 @@ impl Stage {
         self.processes.iter_mut().filter_map(|process| process.saves(model)).collect()
     }
 
+    /// Whether one of its processes saves the run now and then.
+    pub(super) fn saves_runs(&self) -> bool {
+        self.processes.iter().any(|process| process.saves_runs())
+    }
+
     /// State between steps.
     pub(super) fn state(&self) -> SavedStage {
         SavedStage {
