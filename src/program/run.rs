@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &RunArguments, ranks: &Ranks, ran: &mut bool) -> Re
     if let Some(report) = &report {
         report.check(file)?;
     }
-    let stop = Stop::listen()?;
+    let stop = Stop::listen(ranks.is_root())?;
     let options = RunOptions {
         threads: *threads,
         like: like.clone(),
@@ -127,6 +127,10 @@ fn drive(simulation: &mut Simulation, monitor: &mut dyn Monitor, resume: bool, s
             let time = simulation.time().unwrap_or_default();
             return Ok(Ended::Stopped { saved: simulation.suspend()?, time });
         }
+        if let Some(saved) = simulation.autosave()? {
+            monitor.note(&format!("saved in {}, in case the run is killed: `--resume` continues it", saved.display()));
+        }
     }
+    simulation.remove_autosave();
     Ok(Ended::Done)
 }

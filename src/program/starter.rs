@@ -8,16 +8,24 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use zelus_core::diagnostics::{Diagnostic, Place};
+use zelus_core::entities::find_kind;
 use zelus_core::io::mdpa::{self, EntityBlock, MdpaDocument};
 use zelus_core::io::replace_own_file;
+use zelus_core::model::Role;
 use zelus_core::{Error, Result};
 use zelus_meshes::document::{Names, document};
 use zelus_meshes::mend::is_planar;
-use zelus_meshes::mesh::{LoadKind, Mesh};
+use zelus_meshes::mesh::{LoadKind, Material, Mesh, Plane};
 use zelus_meshes::{format, proximity, read};
 
 use super::meshes::counts;
 use super::say::say;
+
+/// Beginnings of the names of elements: the usual ones, and those for materials that hardly change their volume.
+const PLAIN: &str = "SmallDisplacementElement";
+const MIXED: &str = "SmallDisplacementMixedVolumetricStrainElement";
+/// Poisson's ratio above which the usual ones of first order lock.
+const LOCKS: f64 = 0.49;
 
 /// The command line of `zelus new`.
 #[derive(Debug, clap::Args)]
@@ -32,7 +40,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     format: Option<String>,
     /// Beginning of the names of elements.
-    #[arg(long, value_name = "NAME", default_value = "SmallDisplacementElement")]
+    #[arg(long, value_name = "NAME", default_value = PLAIN)]
     element_name: String,
 }
 
@@ -50,6 +58,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     }
     let names = Names { element: arguments.element_name.clone(), condition: String::new() };
     let mut document = document(&mesh, &names, &Place::file(from), &mut said);
+    let mixed = arguments.element_name == PLAIN && take_mixed_elements(&mesh, &mut document);
     add_point_loads(&mesh, &mut document);
     let stem = from.file_stem().map_or("mesh".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from(&stem));
@@ -75,6 +84,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         let found = if stated == 0 { ", found by proximity" } else { "" };
         say(&format!("{what}: slave {}, master {}{found}", pair.slave, pair.master));
     }
+    if mixed {
+        say(&format!("elements: {MIXED}, since {PLAIN} locks at Poisson's ratios above {LOCKS}"));
+    }
     if supports.is_empty() {
         say("no supports are known: state them in the deck before it is run");
     }
@@ -84,6 +96,23 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
 
 fn put(path: &Path, text: &str) -> Result<()> {
     replace_own_file(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// Takes elements that do not lock where a material of the mesh hardly changes its volume; whether it did. Those of second order stay,
+/// and rings and plane stress have none.
+fn take_mixed_elements(mesh: &Mesh, document: &mut MdpaDocument) -> bool {
+    let is_near_half = |material: &Material| material.young.is_some() && material.poisson > LOCKS;
+    if matches!(mesh.plane, Some(Plane::Stress | Plane::Axial)) || !mesh.materials.iter().any(is_near_half) {
+        return false;
+    }
+    let mut taken = false;
+    for block in &mut document.elements {
+        let mixed = block.name.strip_prefix(PLAIN).map(|suffix| format!("{MIXED}{suffix}"));
+        if let Some(mixed) = mixed.filter(|name| find_kind(Role::Element, name).is_some()) {
+            (block.name, taken) = (mixed, true);
+        }
+    }
+    taken
 }
 
 /// Gives each node with a force of its own a condition that carries it.

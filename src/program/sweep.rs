@@ -67,7 +67,7 @@ pub(super) fn run(arguments: &RunArguments, table: &Path, ranks: &Ranks) -> Resu
     let machine = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let cores = arguments.threads.unwrap_or_else(machine);
     let jobs = arguments.jobs.unwrap_or(cores).clamp(1, table.rows.len());
-    let sweep = Sweep { arguments, folder, threads: (cores / jobs).max(1), stop: Stop::listen()?, table };
+    let sweep = Sweep { arguments, folder, threads: (cores / jobs).max(1), stop: Stop::listen(false)?, table };
     let rows = sweep.table.rows.len();
     let tell = |text: &str| {
         if !arguments.quiet {
@@ -315,12 +315,16 @@ impl Ended {
         self.forces().into_iter().find(|(own, _)| own == pair).map(|(_, force)| force)
     }
 
-    /// Why it ended early: the first line of its error.
+    /// Why it ended early: the first line of its error, whatever was warned of before.
     fn why(&self) -> String {
-        let told = self.report.as_ref().and_then(|report| report.errors.first().cloned());
-        let text = told.unwrap_or_else(|| self.said.clone());
-        let stopped = if self.code == 5 { "stopped by a signal, and saved" } else { "it has left no report" };
-        text.lines().find(|line| !line.trim().is_empty()).unwrap_or(stopped).trim().to_owned()
+        if self.code == 5 {
+            return "stopped by a signal, and saved".to_owned();
+        }
+        let told = self.report.as_ref().map_or(Vec::new(), |report| report.errors.clone());
+        let lines = || told.iter().flat_map(|text| text.lines()).chain(self.said.lines()).map(str::trim);
+        let is_other = |line: &str| line.is_empty() || ["warning[", "note["].iter().any(|word| line.starts_with(word));
+        let error = lines().find(|line| line.starts_with("error[")).or_else(|| lines().find(|line| !is_other(line)));
+        error.unwrap_or("it has left no report").to_owned()
     }
 }
 

@@ -5,8 +5,10 @@
 mod blocks_of_case;
 #[path = "../support/mod.rs"]
 mod support;
-mod ranges;
+mod histories;
 mod loads_and_supports;
+mod meshes_and_tables;
+mod ranges;
 mod table;
 
 use std::fmt::Write as _;
@@ -19,11 +21,15 @@ use table::{Files, MISTAKES, Mistake, PRESSED, Told, contact, load, support};
 const DECK: &str = "ProjectParameters.json";
 const MATERIALS: &str = "StructuralMaterials.json";
 const MESH: &str = "mesh.mdpa";
-const CODES: [&str; 21] = [
+const CODES: [&str; 29] = [
     "acts-on-nothing",
+    "coincident-nodes",
+    "collapsed-element",
     "contact-of-revolution",
     "contradicting-values",
     "duplicate-key",
+    "element-in-two-materials",
+    "face-pressure-mixed",
     "friction-overridden",
     "held-by-nothing",
     "initial-penetration",
@@ -31,15 +37,19 @@ const CODES: [&str; 21] = [
     "invalid-tolerance",
     "listed-twice",
     "load-given-twice",
+    "locking",
     "mutual-pairs",
     "negative-friction",
     "no-friction",
     "one-body",
+    "pair-given-twice",
     "repeated-properties",
     "settings-without-process",
     "slave-in-two-pairs",
     "slaves-without-pair",
+    "table-ends-early",
     "unknown-key-ignored",
+    "unlike-sections",
     "whole-body",
 ];
 

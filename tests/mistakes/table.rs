@@ -688,4 +688,174 @@ pub const MISTAKES: &[Mistake] = &[
         code: "unknown-key-ignored",
         names: "time_step",
     },
+    Mistake {
+        what: "an element in two parts with unlike materials",
+        case: PRESSED,
+        make: |Files { mesh, .. }| list(mesh, "Upper", "Elements", 1),
+        exit: 2,
+        told: Told::Before,
+        code: "element-in-two-materials",
+        names: "element 1 is in the parts \"Structure.Lower\" and \"Structure.Upper\"",
+    },
+    Mistake {
+        what: "a node of a body that is not merged",
+        case: "structural/self_weight",
+        make: |Files { mesh, .. }| {
+            swap(mesh, "1 0 1 2 4 3 5 6 8 7", "1 0 1 2 4 3 21 6 8 7");
+            swap(mesh, "\n20 0.5 0.5 2\n", "\n20 0.5 0.5 2\n21 0 1e-8 0.5\n");
+            list(mesh, "Body", "Nodes", 21);
+        },
+        exit: 0,
+        told: Told::Before,
+        code: "coincident-nodes",
+        names: "5 and 21 at (0, 0, 0.5)",
+    },
+    Mistake {
+        what: "bodies that touch and that nothing couples",
+        case: PRESSED,
+        make: |files| {
+            held_from_above(files, "-0.01*t");
+            files.deck["processes"]["contact_process_list"] = json!([]);
+        },
+        exit: 0,
+        told: Told::Before,
+        code: "coincident-nodes",
+        names: "two nodes stand at 4 places and nothing couples them",
+    },
+    Mistake {
+        what: "a quadrilateral that names a node twice",
+        case: "structural/bar_thickness",
+        make: |Files { mesh, .. }| swap(mesh, "\n1 0 1 2 7 6\n", "\n1 0 1 1 7 6\n"),
+        exit: 0,
+        told: Told::Before,
+        code: "collapsed-element",
+        names: "SmallDisplacementElement2D4N 1 with node 1",
+    },
+    Mistake {
+        what: "elements that lock",
+        case: PRESSED,
+        make: |Files { materials, .. }| {
+            materials["properties"][1]["Material"]["Variables"]["POISSON_RATIO"] = json!(0.4999);
+        },
+        exit: 0,
+        told: Told::Before,
+        code: "locking",
+        names: "of part Upper locks at POISSON_RATIO 0.4999",
+    },
+    Mistake {
+        what: "a pair of bodies of unlike thickness",
+        case: PRESSED,
+        make: |Files { materials, .. }| {
+            materials["properties"][1]["Material"]["Variables"]["THICKNESS"] = json!(0.1);
+        },
+        exit: 0,
+        told: Told::Before,
+        code: "unlike-sections",
+        names: "THICKNESS 0.1 (properties 2) and 1 (properties 1)",
+    },
+    Mistake {
+        what: "a pair of a body in plane stress and one in plane strain",
+        case: PRESSED,
+        make: |Files { materials, .. }| {
+            materials["properties"][1]["Material"]["constitutive_law"]["name"] = json!("LinearElasticPlaneStress2DLaw");
+        },
+        exit: 0,
+        told: Told::Before,
+        code: "unlike-sections",
+        names: "a body in plane stress (properties 2) and one in plane strain (properties 1)",
+    },
+    Mistake {
+        what: "Young's modulus in another unit",
+        case: PRESSED,
+        make: |Files { materials, .. }| {
+            materials["properties"][1]["Material"]["Variables"]["YOUNG_MODULUS"] = json!(1e3);
+        },
+        exit: 0,
+        told: Told::Run,
+        code: "large-motion",
+        names: "times the size of the model",
+    },
+    Mistake {
+        what: "a strain beyond small displacements",
+        case: PRESSED,
+        make: |Files { materials, .. }| {
+            materials["properties"][1]["Material"]["Variables"]["YOUNG_MODULUS"] = json!(1e6);
+        },
+        exit: 0,
+        told: Told::Run,
+        code: "large-strain",
+        names: "the element holds for small displacements only",
+    },
+    Mistake {
+        what: "a face of a nodal pressure the other way round",
+        case: "structural/load_table",
+        make: |Files { mesh, .. }| swap(mesh, "\n2 0 15 14\n", "\n2 0 14 15\n"),
+        exit: 0,
+        told: Told::Before,
+        code: "face-pressure-mixed",
+        names: "presses on 1 faces and pulls at 1",
+    },
+    Mistake {
+        what: "a table that ends before the run",
+        case: "structural/load_table",
+        make: |Files { deck, .. }| deck["problem_data"]["end_time"] = json!(8.0),
+        exit: 0,
+        told: Told::Before,
+        code: "table-ends-early",
+        names: "load.csv ends at time 4, and the run goes on until 8",
+    },
+    Mistake {
+        what: "a contact process listed twice",
+        case: "contact_2d/nitsche",
+        make: |Files { deck, .. }| {
+            let list = deck["processes"]["contact_process_list"].as_array_mut().expect("a list");
+            let same = list[0].clone();
+            list.push(same);
+        },
+        exit: 0,
+        told: Told::Before,
+        code: "pair-given-twice",
+        names: "nitsche_contact_process puts contact between surfaces that have it by nitsche_contact_process",
+    },
+    Mistake {
+        what: "a coefficient of friction on the master only",
+        case: SLIDING,
+        make: |Files { deck, materials, .. }| {
+            contact(deck).as_object_mut().expect("settings").remove("friction_coefficients");
+            materials["properties"][0]["Material"]["Variables"]["FRICTION_COEFFICIENT"] = json!(0.3);
+            materials["properties"][1]["Material"]["Variables"]
+                .as_object_mut()
+                .expect("constants")
+                .remove("FRICTION_COEFFICIENT");
+        },
+        exit: 0,
+        told: Told::Before,
+        code: "no-friction",
+        names: "FRICTION_COEFFICIENT",
+    },
+    Mistake {
+        what: "a history of values that nodes do not have",
+        case: PRESSED,
+        make: |Files { deck, .. }| {
+            let mut found = false;
+            for process in deck["processes"]["json_output_process_list"].as_array_mut().expect("a list") {
+                process["Parameters"]["output_variables"] = json!(["TEMPERATURE"]);
+                found = true;
+            }
+            assert!(found, "a history");
+        },
+        exit: 0,
+        told: Told::Run,
+        code: "no-values",
+        names: "json_output_process writes TEMPERATURE as zeros",
+    },
+    Mistake {
+        what: "a penalty that changes nothing",
+        case: PRESSED,
+        make: |Files { deck, .. }| contact(deck)["advance_ALM_parameters"] = json!({"adapt_penalty": true}),
+        exit: 0,
+        told: Told::Before,
+        code: "key-without-effect",
+        names: "\"adapt_penalty\" changes nothing",
+    },
 ];

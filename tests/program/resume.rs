@@ -117,6 +117,7 @@ fn a_signal_stops_after_the_step_and_says_how_to_go_on() {
             let said = said(&output);
             let last = said.lines().last().unwrap_or_default();
             assert!(last.contains("stopped at time") && last.contains("run ProjectParameters.json --resume"), "{said}");
+            assert!(said.contains("stopping after this step; again to stop now"), "{said}");
             let report = read_json(&folder.path().join("report.json")).expect("a report");
             assert_eq!(report["converged"], json!(false), "{name}");
             std::fs::remove_file(folder.path().join("report.json")).expect("the report");
@@ -207,4 +208,59 @@ fn names_of_saved_runs_that_lead_nowhere_are_refused() {
     }
     [&pointer, &folder.path().join("pipe")].into_iter().for_each(|path| std::fs::remove_file(path).expect("a file"));
     assert!(contents(folder.path()) == whole, "files have changed");
+}
+
+/// A run with a file that has changed since it was saved does not go on, and says which.
+#[test]
+fn changed_materials_and_tables_are_refused_by_name() {
+    for (case, file, find, with) in [
+        ("cases/contact_2d/friction_slide", "StructuralMaterials.json", "1000000000.0", "2000000000.0"),
+        ("cases/structural/load_table", "load.csv", "2.0,3.0e6", "2.0,4.0e6"),
+    ] {
+        let saving = |deck: &mut Value| {
+            deck["output_processes"] = json!({"saved": [{"python_module": "save_restart_process",
+                "Parameters": {"model_part_name": "Structure", "restart_control_type": "step", "restart_save_frequency": 1}}]});
+        };
+        let scratch = deck(case, 3, saving);
+        let output = zelus(scratch.path(), &["run", DECK]);
+        assert!(output.status.success(), "{}", said(&output));
+        let output = zelus(scratch.path(), &["run", DECK, "--resume"]);
+        assert!(output.status.success(), "unchanged: {}", said(&output));
+        support::change(scratch.path(), file, find, with);
+        let output = zelus(scratch.path(), &["run", DECK, "--resume"]);
+        let told = said(&output);
+        assert_eq!(output.status.code(), Some(2), "{told}");
+        assert!(told.contains("error[saved-run]") && told.contains(&format!("{file} has changed since")), "{told}");
+    }
+}
+
+/// A run saves itself every `autosave_minutes`, goes on from there when it is killed, and leaves nothing when it comes to its end.
+#[test]
+fn a_run_saves_itself_now_and_then() {
+    let motion = |minutes: f64| {
+        deck("decks/bouncing_block", 350, move |deck| deck["problem_data"]["autosave_minutes"] = json!(minutes))
+    };
+    let saved = |folder: &Path| folder.join("ProjectParameters.rest").exists();
+    for (minutes, saves) in [(1e-6, true), (0.0, false)] {
+        let folder = motion(minutes);
+        let output = zelus(folder.path(), &["run", DECK]);
+        assert!(output.status.success() && !saved(folder.path()), "{}", said(&output));
+        assert_eq!(said(&output).contains("in case the run is killed"), saves, "{}", said(&output));
+    }
+    let folder = motion(1e-6);
+    let mut child = start(folder.path(), &["run", DECK, "-q"]);
+    for _ in 0..2000 {
+        if saved(folder.path()) && folder.path().join("ProjectParameters.resume").exists() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().expect("a kill");
+    child.wait().expect("an end");
+    assert!(saved(folder.path()), "it was saved");
+    let output = zelus(folder.path(), &["run", DECK, "--resume"]);
+    assert!(output.status.success() && said(&output).contains("goes on from"), "{}", said(&output));
+    let whole = motion(0.0);
+    assert!(zelus(whole.path(), &["run", DECK]).status.success());
+    assert_same("autosave", whole.path(), folder.path());
 }

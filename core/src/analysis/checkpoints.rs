@@ -123,6 +123,13 @@ impl Pointer {
         self.0.with_extension("rest")
     }
 
+    /// Removes the saved run beside it, and itself; what cannot be removed is in nobody's way.
+    pub(super) fn remove(&self) {
+        for file in [&self.beside(), &self.0] {
+            let _ = std::fs::remove_file(file);
+        }
+    }
+
     /// The latest saved run; `None` where there is none.
     ///
     /// # Errors

@@ -8,9 +8,12 @@
 mod bodies;
 mod body_loads;
 mod checkpoints;
+mod coincident_nodes;
+mod contents;
 mod cutting;
 mod deck;
 mod driver;
+mod large_motion;
 mod like;
 mod mesh;
 mod no_load;

@@ -74,16 +74,17 @@ impl Regrouping {
         let (mut strategies, mut interactions, mut processes) = (Vec::new(), Vec::new(), Vec::new());
         let mut first = None;
         for stage in stages {
-            first.get_or_insert((stage.begun, stage.first_length, stage.unknowns));
+            first.get_or_insert((stage.begun, stage.contents, stage.first_length, stage.unknowns));
             elements.push(stage.elements);
             conditions.push(stage.conditions);
             strategies.push(vec![stage.strategy]);
             interactions.push(stage.interactions);
             processes.push(stage.processes);
         }
-        let (begun, first_length, unknowns) = first.ok_or_else(|| other_deck("it was saved by no rank"))?;
+        let (begun, contents, first_length, unknowns) = first.ok_or_else(|| other_deck("it was saved by no rank"))?;
         Ok(SavedStage {
             begun,
+            contents,
             first_length,
             unknowns,
             elements: regroup(&system.elements, elements)?,

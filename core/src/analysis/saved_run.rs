@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{State, Unknowns};
 
+use super::contents::Contents;
 use super::deck::StageDeck;
 use super::rank_layout::RankLayout;
 use super::report::RunReport;
@@ -48,6 +49,8 @@ pub(super) struct SavedRun<M, R> {
 #[derive(Serialize, Deserialize)]
 pub(super) struct SavedStage {
     pub begun: bool,
+    /// Digests of the files that it has read beside deck and mesh.
+    pub contents: Contents,
     pub first_length: Option<f64>,
     /// Layout of the unknowns to which the states of the strategy refer.
     pub unknowns: Unknowns,
@@ -84,8 +87,9 @@ impl LoadedRun {
 }
 
 /// Settings that may be others when a run goes on: by them it runs on, or says less.
-const FREE: [&str; 4] = [
+const FREE: [&str; 5] = [
     "problem_data.end_time",
+    "problem_data.autosave_minutes",
     "problem_data.echo_level",
     "problem_data.parallel_type",
     // The contents of the mesh are compared themselves.

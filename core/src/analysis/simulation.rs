@@ -43,6 +43,10 @@ pub struct RunOptions {
     pub results: Option<PathBuf>,
 }
 
+/// Key of the minutes of the clock after which a run saves itself, 0 for never; and their number where a deck does not give it.
+const AUTOSAVE: &str = "problem_data.autosave_minutes";
+const MINUTES: f64 = 10.0;
+
 /// Lays the caller's changes over a deck.
 fn change(deck: &mut Node, options: &RunOptions) -> Result<()> {
     options.changes.iter().try_for_each(|(key, value)| {
@@ -82,6 +86,10 @@ pub struct Simulation {
     checkpoints: Checkpoints,
     /// Names the latest saved run of a deck that is a file.
     pointer: Option<Pointer>,
+    /// Time of the clock since the run began or was saved.
+    unsaved_since: Instant,
+    /// Whether the latest saved run was saved by [`Simulation::autosave`].
+    autosaved: bool,
 }
 
 impl Simulation {
@@ -133,6 +141,8 @@ impl Simulation {
             untold: fewer.into_iter().collect(),
             checkpoints,
             pointer: None,
+            unsaved_since: Instant::now(),
+            autosaved: false,
         })
     }
 
@@ -235,6 +245,35 @@ impl Simulation {
         self.save_named(&path)?;
         self.end_early(true)?;
         Ok(path)
+    }
+
+    /// Saves the run beside its deck, as [`Simulation::suspend`] does, and goes on, where more than `autosave_minutes` of the clock have
+    /// passed since it was saved and no process of the deck saves it; the file where it was saved. Collective.
+    ///
+    /// # Errors
+    /// A disk that refuses.
+    pub fn autosave(&mut self) -> Result<Option<PathBuf>> {
+        let (Some(stage), Some(settings)) = (&self.stage, self.stages.get(self.over)) else { return Ok(None) };
+        let minutes = settings.settings.get_path(AUTOSAVE).and_then(Node::as_f64).unwrap_or(MINUTES);
+        let is_due = minutes > 0.0 && self.unsaved_since.elapsed().as_secs_f64() > 60.0 * minutes;
+        let Some(path) = self.pointer.as_ref().map(Pointer::beside).filter(|_| !stage.saves_runs()) else {
+            return Ok(None);
+        };
+        // The clock of one rank decides for all.
+        if !self.model.ranks.any(is_due && self.model.ranks.is_root()) {
+            return Ok(None);
+        }
+        self.save_named(&path)?;
+        (self.unsaved_since, self.autosaved) = (Instant::now(), true);
+        Ok(Some(path))
+    }
+
+    /// Removes the run that [`Simulation::autosave`] has saved: its end is reached.
+    pub fn remove_autosave(&mut self) {
+        let Some(pointer) = self.pointer.as_ref().filter(|_| std::mem::take(&mut self.autosaved)) else { return };
+        if self.model.ranks.is_root() {
+            pointer.remove();
+        }
     }
 
     /// Goes on from the latest saved run of the deck, by its process `save_restart_process`, its checkpoints or

@@ -4,6 +4,7 @@ use rustc_hash::FxHashMap;
 use zelus_linear_algebra::parallel;
 
 use crate::diagnostics::{Diagnostic, Report};
+use crate::geometry::Shape;
 use crate::model::{EntityTable, ModelPart, Role, ScalarVariable, SubPart};
 use crate::processes::{Load, LoadCarrier, Prescription, Process};
 
@@ -37,6 +38,31 @@ pub(super) fn warn_of_twins(part: &ModelPart, problems: &mut Report) {
         let remedy = "take them out of the mesh, unless bodies or loads are meant to lie over each other";
         problems.push(Diagnostic::warning("listed-twice", fact).remedy(remedy));
     }
+}
+
+/// Warns of elements that name a node twice: a quadrilateral then is a triangle, and where that is a slip of the mesh there is a hole.
+pub(super) fn warn_of_collapsed(part: &ModelPart, problems: &mut Report) {
+    let table = &part.elements;
+    let repeated = |at: u32| {
+        let nodes = table.nodes(at);
+        nodes.iter().enumerate().find(|(place, node)| nodes[..*place].contains(node)).map(|(_, &node)| node)
+    };
+    let found = parallel::select(table.len(), ENTITIES, |at| repeated(at as u32).is_some());
+    let Some((&first, node)) = found.first().and_then(|first| Some((first, repeated(*first)?))) else { return };
+    let kind = table.kinds[first as usize];
+    let word = if found.len() == 1 { "1 element names".to_owned() } else { format!("{} elements name", found.len()) };
+    let fact = format!(
+        "{word} a node twice, the first is {} {} with node {}: an edge of it has no length",
+        kind.name, table.ids[first as usize], part.nodes.ids[node as usize]
+    );
+    let smaller = match kind.cell {
+        Some(Shape::Quad4 | Shape::Quad8 | Shape::Quad9) => "triangles",
+        Some(Shape::Hex8 | Shape::Hex20 | Shape::Hex27) => "prisms",
+        _ => "elements with fewer nodes",
+    };
+    let remedy =
+        format!("name the node that is missing: the mesh has a hole there; where it has none, mesh it with {smaller}");
+    problems.push(Diagnostic::warning("collapsed-element", fact).remedy(remedy));
 }
 
 /// Whether the smallest part that holds the later of two conditions, below this one, holds both.

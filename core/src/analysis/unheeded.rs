@@ -18,6 +18,7 @@ const OBJECTS: [(&str, &[&str]); 3] = [
         &[
             "problem_name",
             "parallel_type",
+            "autosave_minutes",
             "echo_level",
             "start_time",
             "end_time",

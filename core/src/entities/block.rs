@@ -3,6 +3,7 @@
 use std::any::Any;
 use std::ops::Range;
 
+use super::assumed_small::AssumedSmall;
 use super::face_point::FacePoint;
 use super::view::StepView;
 use serde::{Deserialize, Serialize};
@@ -321,6 +322,16 @@ pub trait EntityBlock: Send + Sync {
     /// Names that [`EntityBlock::gauss`] answers.
     fn gauss_variables(&self) -> &'static [&'static str] {
         &[]
+    }
+
+    /// Warnings about the choice of this kind for its entities, e.g. elements that lock with their material.
+    fn warnings(&self) -> &[Diagnostic] {
+        &[]
+    }
+
+    /// The number of the `at`-th entity that the theory of the kind takes to be small, in the present state; `None` where it takes none.
+    fn assumed_small(&self, _view: &StepView<'_>, _at: usize) -> Option<AssumedSmall> {
+        None
     }
 
     /// Reason why the `at`-th entity cannot give the traction on its faces; `None` where [`EntityBlock::traction`] does.

@@ -8,13 +8,14 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use zelus_linear_algebra::{State, parallel};
 
+use super::assumed_small::AssumedSmall;
 use super::block::{
     BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, NO_TRACTIONS, Tangent, Want,
 };
 use super::block_state::BlockState;
 use super::face_point::FacePoint;
 use super::view::StepView;
-use crate::diagnostics::{Report, Result, unfit};
+use crate::diagnostics::{Diagnostic, Report, Result, unfit};
 use crate::model::{EntityKind, Properties, Role};
 
 /// Data of its entity that a kernel gets, beside the step's fields.
@@ -168,6 +169,16 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
         &[]
     }
 
+    /// Warnings about the choice of this kernel for the requested entities.
+    fn warnings(_request: &BlockRequest<'_>) -> Vec<Diagnostic> {
+        Vec::new()
+    }
+
+    /// See [`EntityBlock::assumed_small`].
+    fn assumed_small(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Option<AssumedSmall> {
+        None
+    }
+
     /// Reason why the entity cannot give the traction on its faces; `None` where [`Kernel::traction`] does.
     fn lacks_tractions(&self, _entity: &Gather<'_, NODES>) -> Option<&'static str> {
         Some(NO_TRACTIONS)
@@ -195,6 +206,7 @@ pub struct KernelBlock<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: u
     nodes: Vec<[u32; NODES]>,
     states: Vec<K::State>,
     unknowns: Vec<LocalUnknown>,
+    warnings: Vec<Diagnostic>,
 }
 
 impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> KernelBlock<K, NODES, SIZE> {
@@ -211,6 +223,7 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> KernelBlock<
             kernel,
             nodes: nodes.as_chunks().0.to_vec(),
             states: Vec::new(),
+            warnings: K::warnings(request),
         }))
     }
 
@@ -474,6 +487,14 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
 
     fn gauss_variables(&self) -> &'static [&'static str] {
         K::gauss_variables()
+    }
+
+    fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    fn assumed_small(&self, view: &StepView<'_>, at: usize) -> Option<AssumedSmall> {
+        self.kernel.assumed_small(&self.gather(at, view), view)
     }
 
     fn lacks_tractions(&self, view: &StepView<'_>, at: usize) -> Option<&'static str> {

@@ -3,6 +3,7 @@
 //! Dispatch happens once a block: a [`EntityBlock`] writes the local systems of a whole range of its entities into
 //! buffers of the caller. A method is a [`Kernel`], the mathematics of one entity; [`KernelBlock`] makes a block of it.
 
+mod assumed_small;
 mod block;
 mod block_state;
 mod constraint_entry;
@@ -14,6 +15,7 @@ mod pair_state;
 mod registered;
 mod view;
 
+pub use assumed_small::AssumedSmall;
 pub use block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalOwner, LocalSystems, LocalUnknown, Tangent, Want};
 pub(crate) use block_state::regroup;
 pub use constraint_entry::{ConstraintEntry, ConstraintFactory, ConstraintRow};

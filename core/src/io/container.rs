@@ -12,7 +12,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use zelus_linear_algebra::packed;
 
-use super::outputs::Mark;
+use super::outputs::{Mark, remove_half_written};
 use super::replace::replace_own_file;
 use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
@@ -22,7 +22,7 @@ const MARK: &str = "zelus saved run\n";
 /// How a saved run is known.
 pub(crate) const SAVED: Mark = Mark::Begins(&[MARK]);
 /// Version of the contents: one more with every change of the saved data.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 /// Bytes before the lengths.
 const HEAD: usize = MARK.len() + 4 + 4;
 /// Bytes of the head for each rank: length and checksum.
@@ -49,6 +49,9 @@ pub fn write_saved(ranks: &Ranks, path: &Path, contents: &impl Serialize) -> Res
         Some(received.into_iter().flat_map(u32::to_le_bytes).take(to - from).collect::<Vec<u8>>())
     };
     let written = if ranks.is_root() {
+        let (folder, name) = (path.parent().unwrap_or(Path::new("")), path.file_name().unwrap_or_default());
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        remove_half_written(folder, |left| name == left);
         replace_own_file(path, |out| {
             out.write_all(MARK.as_bytes())?;
             out.write_all(&VERSION.to_le_bytes())?;

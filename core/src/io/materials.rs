@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::given_materials::{GivenMaterials, is_part_of};
 use super::variables::{composed_law, kind_of, last_of_path, law_name, unknown_variable, without_effect};
 use crate::diagnostics::{Diagnostic, Error, Place, Report, Result, did_you_mean};
 use crate::model::{MaterialRange, ModelPart, Properties, PropertyValue, Table, VariableKind};
@@ -42,6 +43,7 @@ pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnost
     let mut report = Report::new();
     let mut seen: Vec<String> = Vec::new();
     let mut ids: BTreeMap<usize, Place> = BTreeMap::new();
+    let mut given = GivenMaterials::new(part);
     warn_of_keys(root, "the materials file", &["properties"], &mut report);
     for item in root.require("properties")?.array()? {
         let Some((mut name, id)) = report.absorb(head(item)) else { continue };
@@ -62,13 +64,14 @@ pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnost
                 Diagnostic::error("repeated-properties", fact).at(item.key_place("properties_id")).remedy(remedy),
             );
         }
-        seen.push(name.clone());
         let mut properties = part.properties.remove(&id).unwrap_or_else(|| Properties::new(id));
         properties.place = Some(item.place());
         read_item(item, &mut properties, part.info.domain_size, &mut report);
         part.properties.insert(id, properties);
         if let Ok(selected) = part.part(&name) {
             let (elements, conditions) = (selected.elements.clone(), selected.conditions.clone());
+            let problem = given.give(&elements, &seen, &name, id, part);
+            problem.into_iter().for_each(|problem| report.push(problem.at(item.key_place("model_part_name"))));
             elements.iter().for_each(|&at| part.elements.properties[at as usize] = id);
             conditions.iter().for_each(|&at| part.conditions.properties[at as usize] = id);
         }
@@ -78,6 +81,7 @@ pub fn apply_materials(root: &Node, part: &mut ModelPart) -> Result<Vec<Diagnost
                 part.properties.sort_unstable();
             }
         });
+        seen.push(name);
     }
     report.finish()
 }
@@ -116,11 +120,6 @@ fn warn_of_keys(object: &Node, name: &str, known: &[&str], report: &mut Report) 
         let warning = Diagnostic::warning("unknown-key-ignored", fact).at(object.key_place(&member.key));
         report.push(warning.remedy(remedy));
     }
-}
-
-/// Whether the path `name` is that of `parent` or of a part below it.
-fn is_part_of(name: &str, parent: &str) -> bool {
-    name.strip_prefix(parent).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 fn head(item: &Node) -> Result<(String, usize)> {

@@ -1,6 +1,7 @@
 //! Files in and out: meshes, materials, results.
 
 mod container;
+mod given_materials;
 mod import;
 mod materials;
 pub mod mdpa;

@@ -228,18 +228,24 @@ impl Claim {
             Err(TryLockError::Error(_)) => {}
         }
         let name = name.to_string_lossy();
-        for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-            let half = entry.file_name();
-            let half = half.to_string_lossy();
-            let left = half.strip_prefix('.').and_then(|half| half.strip_suffix(".part")?.rsplit_once('.'));
-            let is_own = |left: &str| left == name || of_series(left, &name);
-            let writes = |process: &str| Path::new("/proc").join(process).exists();
-            if left.is_some_and(|(left, process)| is_own(left) && !writes(process)) {
-                // A file that cannot be removed is in nobody's way.
-                let _ = fs::remove_file(entry.path());
-            }
-        }
+        // A series has lists beside it, of the same name with other endings.
+        let stem = |name: &str| name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned();
+        remove_half_written(folder, |left| of_series(left, &name) || stem(left) == stem(&name));
         Ok(Self { path, _lock: lock })
+    }
+}
+
+/// Removes what killed runs have left half written of the files of a folder that are `wanted` by name.
+pub(super) fn remove_half_written(folder: &Path, wanted: impl Fn(&str) -> bool) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let half = entry.file_name();
+        let half = half.to_string_lossy();
+        let left = half.strip_prefix('.').and_then(|half| half.strip_suffix(".part")?.rsplit_once('.'));
+        let writes = |process: &str| Path::new("/proc").join(process).exists();
+        if left.is_some_and(|(left, process)| wanted(left) && !writes(process)) {
+            // A file that cannot be removed is in nobody's way.
+            let _ = fs::remove_file(entry.path());
+        }
     }
 }
 

@@ -55,6 +55,13 @@ impl SubPart {
         self.children.get_mut(head)?.find_mut(rest)
     }
 
+    /// Name of the smallest part below this one that holds an element.
+    pub fn smallest_with_element(&self, element: u32) -> Option<&str> {
+        let holds = |part: &&Self| part.elements.binary_search(&element).is_ok();
+        let smallest = self.children.values().filter(holds).min_by_key(|part| part.elements.len())?;
+        smallest.smallest_with_element(element).or(Some(&smallest.name))
+    }
+
     /// Dotted paths of all parts below this one.
     pub fn paths(&self) -> Vec<String> {
         let mut out = Vec::new();

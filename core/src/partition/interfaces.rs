@@ -1,9 +1,10 @@
 //! The surfaces of a deck that may touch each other, as its processes say.
 
 use super::listed_processes::each_process;
+use crate::diagnostics::{Diagnostic, Place};
 use crate::model::ModelPart;
-use crate::parameters::Node;
-use crate::processes::NamedSurface;
+use crate::parameters::{Interval, Node};
+use crate::processes::{NamedSurface, ProcessEntry};
 
 /// Nodes of the surfaces of one pair, both sides together.
 ///
@@ -31,7 +32,71 @@ pub fn surfaces(deck: &Node, part: &ModelPart) -> Vec<Surface> {
     out
 }
 
+/// A process of the deck that puts something between surfaces.
+struct Pairing {
+    puts: &'static str,
+    name: &'static str,
+    place: Place,
+    interval: Interval,
+    surfaces: Vec<Surface>,
+}
+
+/// Warnings of pairs of surfaces between which two processes of the deck put the same, e.g. contact, at the same time.
+pub fn warnings_of_repeated_pairs(deck: &Node, part: &ModelPart) -> Vec<Diagnostic> {
+    let mut listed: Vec<(&'static ProcessEntry, Option<Node>)> = Vec::new();
+    if let Some(lists) = deck.get("processes") {
+        each_process(lists, &mut |entry, parameters| listed.push((entry, parameters.cloned())));
+    }
+    let pairing = |(entry, parameters): &(&'static ProcessEntry, Option<Node>)| {
+        let parameters = parameters.as_ref()?;
+        let interval = parameters.get("interval").and_then(|node| Interval::from_node(node).ok());
+        let named = (entry.surfaces)(Some(parameters));
+        let surfaces = named.iter().map(|surface| Surface::new(surface, part)).collect();
+        let interval = interval.unwrap_or(Interval::ALWAYS);
+        Some(Pairing { puts: entry.puts, name: entry.name, place: parameters.place(), interval, surfaces })
+    };
+    let all: Vec<Pairing> = listed.iter().filter(|(entry, _)| !entry.puts.is_empty()).filter_map(pairing).collect();
+    let mut out = Vec::new();
+    for (at, later) in all.iter().enumerate() {
+        for earlier in &all[..at] {
+            let begin = later.interval.begin.max(earlier.interval.begin);
+            let together = begin < later.interval.end.min(earlier.interval.end);
+            let repeats = later.surfaces.iter().any(|one| earlier.surfaces.iter().any(|other| one.is_of_pair(other)));
+            if later.puts != earlier.puts || !together || !repeats {
+                continue;
+            }
+            let fact = format!(
+                "{} puts {} between surfaces that have it by {} at {} already: both act",
+                later.name, later.puts, earlier.name, earlier.place
+            );
+            let remedy = "keep one of the processes for these surfaces";
+            out.push(Diagnostic::warning("pair-given-twice", fact).at(later.place.clone()).remedy(remedy));
+        }
+    }
+    out
+}
+
 impl Surface {
+    /// Whether most of the smaller of both pairs is of the larger one, side by side or crosswise.
+    fn is_of_pair(&self, other: &Self) -> bool {
+        if self.whole_skin || other.whole_skin {
+            return true;
+        }
+        let masters = |of: &Self| -> Vec<u32> {
+            of.nodes.iter().copied().filter(|node| of.slaves.binary_search(node).is_err()).collect()
+        };
+        let most = |one: &[u32], two: &[u32]| {
+            let common = one.iter().filter(|node| two.binary_search(node).is_ok()).count();
+            2 * common > one.len().min(two.len())
+        };
+        if self.slaves.is_empty() || other.slaves.is_empty() {
+            return most(&self.nodes, &other.nodes);
+        }
+        let [own, their] = [masters(self), masters(other)];
+        most(&self.slaves, &other.slaves) && most(&own, &their)
+            || most(&self.slaves, &their) && most(&own, &other.slaves)
+    }
+
     fn new(named: &NamedSurface, part: &ModelPart) -> Self {
         match named {
             NamedSurface::WholeSkin => Self { whole_skin: true, ..Self::default() },

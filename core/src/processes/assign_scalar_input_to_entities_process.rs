@@ -8,9 +8,11 @@ use crate::processes::ProcessEntry;
 use std::path::{Path, PathBuf};
 
 use super::assign_to_entities::{Container, centre};
+use super::face_direction;
 use super::prescription::{Load, LoadCarrier};
 use super::process::{Process, ProcessRequest};
 use super::target::{Target, read_text, scalar_variable};
+use super::time_table::TimeTable;
 use crate::diagnostics::{Diagnostic, Place, Result};
 use crate::io::FileUse;
 use crate::model::{Fields, Model, ModelPart, ScalarVariable, SubPart, Table};
@@ -36,6 +38,7 @@ struct AssignScalarInput {
     members: Vec<Vec<(u32, usize)>>,
     place: Place,
     file: PathBuf,
+    messages: Vec<Diagnostic>,
 }
 
 fn build(
@@ -70,6 +73,7 @@ fn build(
         members: Vec::new(),
         place: settings.key_place("file"),
         file: path,
+        messages: Vec::new(),
     }))
 }
 
@@ -133,6 +137,9 @@ fn text_sites(path: &Path, settings: &Settings) -> Result<Vec<(Site, Table)>> {
             let fact = format!("{} numbers for a time and {} sites", numbers.len(), sites.len());
             return Err(wrong(at, fact).into());
         }
+        if let Some(number) = numbers.iter().find(|number| !number.is_finite()) {
+            return Err(wrong(at, format!("a number of the table is {number}")).into());
+        }
         series.iter_mut().zip(&numbers[1..]).for_each(|(points, &value)| points.push([numbers[0], value]));
     }
     Ok(sites.into_iter().zip(series.into_iter().map(Table::new)).collect())
@@ -185,12 +192,37 @@ impl Process for AssignScalarInput {
         vec![FileUse::Reads(self.file.clone())]
     }
 
+    fn decisive_files(&self) -> Vec<PathBuf> {
+        vec![self.file.clone()]
+    }
+
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root(&self.target.path)?;
         let selection = self.target.selection(&part.tree)?;
         let members = self.containers.iter().map(|&container| self.nearest(part, selection, container));
         self.members = members.collect::<Result<_>>()?;
+        let (nodes, conditions) = (selection.nodes.clone(), selection.conditions.clone());
+        let part = model.root_mut(&self.target.path)?;
+        for container in &self.containers {
+            let said = match container {
+                Container::Nodes if self.history => face_direction::pulling_of_nodes(part, &nodes, self.variable, None),
+                Container::Conditions => face_direction::pulling(part, &conditions, self.variable, None),
+                Container::Nodes | Container::Elements => None,
+            };
+            self.messages.extend(said.map(|said| said.at(self.target.place.clone())));
+        }
         Ok(())
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.messages)
+    }
+
+    fn time_tables(&self) -> Vec<TimeTable> {
+        let name = self.file.file_name().unwrap_or_default().to_string_lossy();
+        let of_site =
+            |(_, table): &(Site, Table)| TimeTable::new(&name, self.place.clone(), table, self.target.interval);
+        self.sites.iter().take(1).filter_map(of_site).collect()
     }
 
     fn loads(&self, part: &ModelPart) -> Vec<Load> {

@@ -4,6 +4,7 @@
 //! step it is released on all nodes of the part. Between steps all such unknowns are therefore free, a later process on
 //! the same unknown wins, and fixities of the mesh file on the same unknown last one step only.
 
+use super::face_direction;
 use super::local_axes::LocalAxes;
 use super::prescription::{Load, LoadCarrier, Prescription, is_load, lost_in_the_plane, of_components};
 use super::process::Process;
@@ -40,12 +41,13 @@ pub struct AssignToNodes {
     active: bool,
     /// Whether it has acted before the first step, which lasts until the end of that.
     held: bool,
+    messages: Vec<Diagnostic>,
 }
 
 impl AssignToNodes {
     /// A process that acts before the first step and at the beginning of each.
     pub fn new(target: Target, components: Vec<NodalComponent>, axes: Option<LocalAxes>) -> Self {
-        Self { target, components, axes, before_loop: true, active: false, held: false }
+        Self { target, components, axes, before_loop: true, active: false, held: false, messages: Vec::new() }
     }
 
     /// Fixes and sets if the time is right; whether it is. A value that is not finite stops the run if `strict`.
@@ -154,11 +156,21 @@ fn moves(column: &str) -> bool {
 
 impl Process for AssignToNodes {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
-        let part = model.root(&self.target.path)?;
+        let part = model.root_mut(&self.target.path)?;
         for component in &self.components {
             part.nodes.history.field(component.variable.column).map_err(|e| e.at(&self.target.place))?;
         }
+        let nodes = self.target.selection(&part.tree)?.nodes.clone();
+        for NodalComponent { variable, value, .. } in self.components.iter().filter(|c| is_load(c.variable.column)) {
+            let constant = if let Some(ScalarValue::Number(number)) = value { Some(*number) } else { None };
+            let said = face_direction::pulling_of_nodes(part, &nodes, *variable, constant);
+            self.messages.extend(said.map(|said| said.at(self.target.place.clone())));
+        }
         Ok(())
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.messages)
     }
 
     fn check(&self, model: &Model, system: &System, warnings: &mut Report) -> Result<()> {

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use super::assign_to_entities::centre;
 use crate::diagnostics::Diagnostic;
 use crate::entities::{BlockFactory, BlockRequest, LocalSystems, Want, block_factory};
-use crate::model::{EntityKind, ModelPart, ScalarVariable};
+use crate::model::{EntityKind, Field, ModelPart, ScalarVariable};
 use crate::vector3::{dot, sub};
 
 /// How many faces a positive number presses on, and how many it pulls.
@@ -18,12 +18,56 @@ struct Faces {
     pulled: usize,
 }
 
-/// Warning where `variable` pulls at some of the `conditions`; `sign` is that of the value where it is a constant.
+/// Where the number stands that faces read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Carrier {
+    Conditions,
+    /// Nodes, in columns with history.
+    Nodes,
+}
+
+impl Carrier {
+    /// The column of the number.
+    fn column(self, part: &mut ModelPart, variable: ScalarVariable) -> Option<&mut Field> {
+        match self {
+            Self::Conditions => part.conditions.data.get_mut(variable.column),
+            Self::Nodes => part.nodes.history.get_mut(variable.column),
+        }
+    }
+}
+
+/// Warning where `variable`, given to `conditions`, pulls at some of them; `sign` is that of the value where it is a constant.
 pub(super) fn pulling(
     part: &mut ModelPart,
     conditions: &[u32],
     variable: ScalarVariable,
     sign: Option<f64>,
+) -> Option<Diagnostic> {
+    pulling_by(part, conditions, variable, sign, Carrier::Conditions)
+}
+
+/// As [`pulling`], of the faces all of whose nodes are among `nodes`, which are given the number.
+pub(super) fn pulling_of_nodes(
+    part: &mut ModelPart,
+    nodes: &[u32],
+    variable: ScalarVariable,
+    sign: Option<f64>,
+) -> Option<Diagnostic> {
+    let is_one = |node: &u32| nodes.binary_search(node).is_ok();
+    let table = &part.conditions;
+    let faces = (0..table.len() as u32).filter(|&at| table.nodes(at).iter().all(is_one)).collect::<Vec<u32>>();
+    if faces.is_empty() || part.nodes.history.get(variable.column).is_none_or(|field| field.components != 1) {
+        return None;
+    }
+    pulling_by(part, &faces, variable, sign, Carrier::Nodes)
+}
+
+fn pulling_by(
+    part: &mut ModelPart,
+    conditions: &[u32],
+    variable: ScalarVariable,
+    sign: Option<f64>,
+    carrier: Carrier,
 ) -> Option<Diagnostic> {
     let sign = sign.unwrap_or(1.0);
     if variable.component.is_some() || sign == 0.0 || part.share.is_some() {
@@ -41,7 +85,7 @@ pub(super) fn pulling(
     let owners = owners(part, conditions);
     let mut faces = Faces::default();
     for (entry, members) in by_kind.into_values() {
-        for (at, force) in unit_forces(part, entry, &members, variable).unwrap_or_default() {
+        for (at, force) in unit_forces(part, entry, &members, variable, carrier).unwrap_or_default() {
             let Some(element) = owners.get(&at) else { continue };
             let middle = |nodes| centre(nodes, &part.nodes.initial);
             let outward = sub(middle(part.conditions.nodes(at)), middle(part.elements.nodes(*element)));
@@ -74,17 +118,24 @@ fn unit_forces(
     entry: &'static EntityKind,
     members: &[u32],
     variable: ScalarVariable,
+    carrier: Carrier,
 ) -> Option<Vec<(u32, [f64; 3])>> {
     let make = block_factory(entry)?;
-    part.conditions.data.add_named(variable.column, 1);
-    let before = part.conditions.data.get(variable.column)?.levels[0].clone();
+    if carrier == Carrier::Conditions {
+        part.conditions.data.add_named(variable.column, 1);
+    }
+    let before = carrier.column(part, variable)?.levels[0].clone();
+    let items: Vec<u32> = match carrier {
+        Carrier::Conditions => members.to_vec(),
+        Carrier::Nodes => members.iter().flat_map(|&at| part.conditions.nodes(at)).copied().collect(),
+    };
     let mut forces = Vec::new();
     for number in [1.0, 0.0] {
-        let column = part.conditions.data.get_mut(variable.column)?;
-        members.iter().for_each(|&at| column.levels[0][at as usize] = number);
+        let values = &mut carrier.column(part, variable)?.levels[0];
+        items.iter().for_each(|&at| values[at as usize] = number);
         forces.push(forces_of(part, entry, make, members));
     }
-    part.conditions.data.get_mut(variable.column)?.levels[0] = before;
+    carrier.column(part, variable)?.levels[0] = before;
     let (none, one) = (forces.pop()??, forces.pop()??);
     Some(members.iter().zip(one.into_iter().zip(none)).map(|(&at, (one, none))| (at, sub(one, none))).collect())
 }
@@ -99,6 +150,10 @@ fn forces_of(
     let mut block =
         make(&BlockRequest { entry, members: members.to_vec(), table, nodes, part, on_initial: true }).ok()?;
     block.initialize(&part.view()).ok()?;
+    // A flux of heat presses on nothing: it has no direction.
+    if block.unknowns().iter().any(|unknown| unknown.variable.component.is_none()) {
+        return None;
+    }
     let (size, mut out) = (block.unknowns().len(), LocalSystems::default());
     out.reset(members.len(), size, Want::Residual);
     block.local_systems(&part.view(), 0..members.len(), Want::Residual, &mut out).ok()?;

@@ -7,6 +7,7 @@
 mod output;
 mod prescription;
 mod process;
+mod time_table;
 mod scalar_value;
 mod local_axes;
 mod target;
@@ -38,5 +39,6 @@ pub use output::{
 pub use prescription::{Load, LoadCarrier, Prescription};
 pub use process::{NamedSurface, Process, ProcessEntry, ProcessFactory, ProcessRequest};
 pub use scalar_value::ScalarValue;
-pub(crate) use scalar_value::tables_of;
+pub(crate) use scalar_value::{tables_of, time_tables_of};
 pub use target::{Target, check_unknowns, other_problems, scalars_of};
+pub use time_table::TimeTable;

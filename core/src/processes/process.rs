@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use zelus_linear_algebra::State;
 
 use super::prescription::{Load, Prescription};
+use super::time_table::TimeTable;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::Interaction;
@@ -140,6 +141,11 @@ pub trait Process: Send {
         None
     }
 
+    /// Whether it is there to save the run now and then.
+    fn saves_runs(&self) -> bool {
+        false
+    }
+
     /// State between steps, for the file of a saved run.
     fn state(&self) -> Option<Box<dyn State>> {
         None
@@ -151,6 +157,11 @@ pub trait Process: Send {
     /// The state of another kind of process; a file that is no longer there.
     fn resume(&mut self, _model: &mut Model, _state: Box<dyn State>) -> Result<()> {
         Ok(())
+    }
+
+    /// Tables over time that it reads from files of its own.
+    fn time_tables(&self) -> Vec<TimeTable> {
+        Vec::new()
     }
 
     /// After the last step, also when a step failed (Kratos: `ExecuteFinalize`).
@@ -176,6 +187,11 @@ pub trait Process: Send {
 
     /// Files that it reads and writes: no output may be an input or another output, and no other run may write it meanwhile.
     fn files(&self) -> Vec<FileUse> {
+        Vec::new()
+    }
+
+    /// Those of the files that it reads whose content decides results.
+    fn decisive_files(&self) -> Vec<std::path::PathBuf> {
         Vec::new()
     }
 
@@ -245,6 +261,8 @@ registered_kind! {
         build: ProcessFactory;
         /// Keys whose parts, or nodes by id, every rank must have whole where several share a mesh.
         common: &'static [&'static str] = &[],
+        /// Word for what it puts between its surfaces that must be there once only, e.g. "contact"; empty where it puts nothing.
+        puts: &'static str = "",
         /// The surfaces that may touch by its doing, as its `Parameters` name them where the deck gives them.
         surfaces: fn(Option<&Node>) -> Vec<NamedSurface> = |_| Vec::new(),
     }

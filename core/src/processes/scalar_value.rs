@@ -5,9 +5,10 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
+use super::time_table::TimeTable;
 use crate::diagnostics::{Diagnostic, Place, Result};
 use crate::model::Table;
-use crate::parameters::{Defaults, Expression, Node, Settings, SpaceTime};
+use crate::parameters::{Defaults, Expression, Interval, Node, Settings, SpaceTime};
 
 /// One number, possibly varying in space and time.
 #[derive(Debug, Clone)]
@@ -99,6 +100,19 @@ pub(crate) fn tables_of(deck: &Node, files: &mut Vec<PathBuf>) {
     members.chain(deck.as_array().into_iter().flatten()).for_each(|inner| tables_of(inner, files));
 }
 
+/// The tables over time that the values of the processes below `deck` name and that can be read, each with the interval of its process.
+pub(crate) fn time_tables_of(deck: &Node, interval: Interval, tables: &mut Vec<TimeTable>) {
+    let own = deck.get("interval").and_then(|node| Interval::from_node(node).ok()).unwrap_or(interval);
+    if deck.get("name").and_then(Node::as_str) == Some("csv_table")
+        && let Some(name) = deck.get("filename").and_then(Node::as_str)
+        && let Ok(table) = read_csv(deck)
+    {
+        tables.extend(TimeTable::new(name, deck.key_place("filename"), &table, own));
+    }
+    let members = deck.as_object().into_iter().flat_map(|members| members.iter().map(|member| &member.node));
+    members.chain(deck.as_array().into_iter().flatten()).for_each(|inner| time_tables_of(inner, own, tables));
+}
+
 /// The file of a table, whose name is relative to the folder of the deck.
 fn table_file(node: &Node, name: &str) -> PathBuf {
     node.place().file.parent().unwrap_or(Path::new("")).join(name)
@@ -111,24 +125,30 @@ fn read_csv(node: &Node) -> Result<Table> {
     };
     let settings = Settings::check(node, defaults)?.0;
     let csv: CsvSettings = settings.parse()?;
+    let replaces_nan = settings.is_given("na_replace");
     let path = table_file(node, &csv.filename);
     let unreadable = |e: std::io::Error| {
         Diagnostic::error("unreadable-file", format!("cannot read the table {}: {e}", path.display()))
             .at(settings.key_place("filename"))
             .remedy("the name is taken relative to the deck")
     };
-    parse_csv(&std::fs::read_to_string(&path).map_err(unreadable)?, &csv, &path)
+    parse_csv(&std::fs::read_to_string(&path).map_err(unreadable)?, &csv, replaces_nan, &path)
 }
 
 /// Entries of a table that stand for a missing value.
-const NOT_AVAILABLE: [&str; 5] = ["", "n/a", "na", "nan", "-"];
+const NOT_AVAILABLE: [&str; 4] = ["", "n/a", "na", "-"];
 
-fn parse_csv(text: &str, csv: &CsvSettings, path: &Path) -> Result<Table> {
+/// A table of two columns; "nan" is a missing value only where the deck says by what it is replaced.
+fn parse_csv(text: &str, csv: &CsvSettings, replaces_nan: bool, path: &Path) -> Result<Table> {
     let number = |cell: &str, row: usize| {
         let cell = cell.trim().trim_matches('"');
         match cell.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
             _ if NOT_AVAILABLE.iter().any(|word| word.eq_ignore_ascii_case(cell)) => Ok(csv.na_replace),
+            Ok(number) if number.is_nan() && replaces_nan => Ok(csv.na_replace),
+            Ok(number) => Err(Diagnostic::error("invalid-table", format!("\"{cell}\" in the table is {number}"))
+                .at(Place::at(path, row as u32 + 1, 0))
+                .remedy("write a finite number; \"na_replace\" gives the number in place of nan")),
             _ => Err(Diagnostic::error("invalid-table", format!("\"{cell}\" is not a number"))
                 .at(Place::at(path, row as u32 + 1, 0))
                 .remedy("a value that is missing is written N/A; \"skiprows\" leaves out the head")),

@@ -74,4 +74,4 @@ pub use records::{IterationRecord, Monitor, Plan, Silent, StepRecord};
 pub use scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, StaticScheme};
 pub use strategy::{Linearized, SolutionStrategy, accept, recorded};
 pub use strategy_entry::{StrategyEntry, StrategyFactory, StrategyRequest};
-pub(crate) use whereabouts::body_of;
+pub(crate) use whereabouts::{body_of, whereabouts};

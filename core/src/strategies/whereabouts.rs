@@ -6,7 +6,7 @@ use crate::geometry::mapping::is_inverted;
 use crate::model::{ModelPart, SubPart};
 
 /// Place of a node in the initial mesh and the smallest part with elements that holds it: " at (x, y, z) of part Body".
-pub(super) fn whereabouts(part: &ModelPart, node: u32) -> String {
+pub(crate) fn whereabouts(part: &ModelPart, node: u32) -> String {
     let [x, y, z] = part.nodes.initial[node as usize];
     let of = body_of(&part.tree, node).map_or(String::new(), |name| format!(" of part {name}"));
     format!(" at ({x}, {y}, {z}){of}")

@@ -6,7 +6,7 @@ use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 
-use crate::interface::Interface;
+use crate::interface::{Interface, Roles};
 use crate::law::{COULOMB, FrictionLaw, Margin, SlipRule};
 use crate::pairs::Friction;
 
@@ -53,18 +53,19 @@ pub(crate) fn prepare(
     let mut overridden: Option<(&str, f64, usize, f64)> = None;
     for interface in interfaces {
         let listed = settings.coefficients.get(&interface.key).copied().filter(|_| law.by_coefficients);
-        let mut is_given = listed.is_some();
+        let (mut slaves, mut bare) = (0, 0);
         let given = listed.filter(|coefficient| *coefficient > 0.0);
         for facet in &interface.facets {
             let own = part.properties.get(&facet.properties).and_then(|p| p.number(law.variable.name()));
             if let (Some(own), Some(given)) = (own, given.filter(|given| own != Some(*given))) {
                 overridden.get_or_insert((&interface.key, given, facet.properties, own));
             }
+            let mut is_given = listed.is_some() || own.is_some();
             for &node in &facet.nodes {
                 let nodal = written.get(node as usize).copied().filter(|number| *number > 0.0);
                 let coefficient = own.or(given).or(nodal).unwrap_or(0.0);
                 largest = largest.max(coefficient);
-                is_given |= own.is_some() || nodal.is_some();
+                is_given |= nodal.is_some();
                 if coefficient < 0.0 {
                     let (name, id) = (law.variable.name(), facet.properties);
                     let fact = format!("{name} of properties {id} is {coefficient}, it must be 0 or more");
@@ -74,9 +75,22 @@ pub(crate) fn prepare(
                 *sum += coefficient;
                 *count += 1;
             }
+            // The coefficient of a pair is that of its slave nodes.
+            if facet.role != Roles::Master {
+                slaves += 1;
+                bare += usize::from(!is_given);
+            }
         }
-        if !is_given {
+        if bare == slaves {
             without.push(&interface.key);
+        } else if bare > 0 && friction == Friction::Coulomb {
+            let name = law.variable.name();
+            let fact = format!(
+                "{bare} of {slaves} slave facets of pair \"{}\" have no {name}: they slide freely",
+                interface.key
+            );
+            let remedy = format!("give {name} in the materials of all slave surfaces, 0 where there is no friction");
+            messages.push(Diagnostic::warning("no-friction", fact).remedy(remedy));
         }
     }
     if let Some((pair, given, id, own)) = overridden.filter(|_| friction == Friction::Coulomb) {

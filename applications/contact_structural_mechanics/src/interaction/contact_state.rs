@@ -9,7 +9,9 @@ use crate::active_set::activation::{self, ActivationCriterion};
 use crate::active_set::{FacetsOfPair, Holding, SetStage, forced_points};
 use crate::flags::{MASTER, SLAVE};
 use crate::friction;
-use crate::interface::{NormalPatches, Roles, SlaveIndex, add_contact_part, interfaces, warnings_of_pairs};
+use crate::interface::{
+    NormalPatches, Roles, SlaveIndex, add_contact_part, interfaces, unlike_sections, warnings_of_pairs,
+};
 use crate::pairing::{Pairing, PairingState, integrate, take_normals_of_masters};
 use crate::pairs::Pair;
 use crate::resolution::Resolution;
@@ -68,6 +70,7 @@ impl ContactState {
         let parts = (&settings.parts, &settings.slaves);
         let (of_start, overlaps) = settle_all(part, &interfaces, parts, &settings.solver);
         messages.extend(of_start);
+        messages.extend(unlike_sections(part, &interfaces));
         Ok(Self {
             messages,
             overlaps,

@@ -297,6 +297,17 @@ fn shared(part: &ModelPart, interfaces: &[Interface]) -> Vec<Diagnostic> {
     interfaces.iter().filter_map(warning).collect()
 }
 
+/// The warning of a tie that these of so many slave nodes face no master.
+pub fn slaves_without_master(part: &ModelPart, without: &[u32], all: usize) -> Option<Diagnostic> {
+    let first = part.nodes.ids[*without.first()? as usize];
+    let fact = format!(
+        "{} of {all} slave nodes of the tie face no master and are not tied, the first is node {first}",
+        without.len()
+    );
+    let remedy = "end the slave part where the master ends, or check that both surfaces meet";
+    Some(Diagnostic::warning("slaves-not-tied", fact).remedy(remedy))
+}
+
 /// Warnings of slaves that no pair has, of nodes on both sides, and of surfaces that are slaves in two pairs.
 pub fn warnings_of_pairs(
     part: &ModelPart,

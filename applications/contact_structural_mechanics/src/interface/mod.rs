@@ -9,6 +9,7 @@ mod nodal_h;
 mod patches;
 mod normals;
 mod parameters;
+mod sections;
 mod slave_index;
 mod symmetry_planes;
 
@@ -16,12 +17,14 @@ pub use bodies::{Bodies, Tractions};
 pub use contact_part::add_contact_part;
 pub use facet::{Facet, FacetSource, Positions, Roles};
 pub use facets::{
-    Interface, check_nodes, check_parts, interfaces, notes_of_bodies, set_sides, sides, slave_nodes, warnings_of_pairs,
+    Interface, check_nodes, check_parts, interfaces, notes_of_bodies, set_sides, sides, slave_nodes,
+    slaves_without_master, warnings_of_pairs,
 };
 pub use fixed::{Fixed, fixed_components};
 pub use nodal_h::find_nodal_h;
 pub use normals::{Corner, NodalNormals, NormalPatches, nodal_normals};
 pub use parameters::{AlmParameters, alm_parameters};
 pub use patches::{FEATURE_ANGLE, Patches};
+pub use sections::unlike_sections;
 pub use slave_index::SlaveIndex;
 pub use symmetry_planes::symmetry_planes;

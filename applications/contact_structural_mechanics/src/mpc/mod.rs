@@ -4,6 +4,7 @@ mod mpc_contact_settings;
 mod mpc_friction;
 mod mpc_interaction;
 mod mpc_kind;
+mod mpc_results;
 mod mpc_settings;
 mod node_relation;
 mod relations;

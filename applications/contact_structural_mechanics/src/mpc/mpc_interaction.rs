@@ -20,6 +20,7 @@ use zelus_structural_mechanics::variables::{NORMAL, REACTION};
 
 use super::mpc_friction::{MpcFriction, reaction};
 use super::mpc_kind::MpcKind;
+use super::mpc_results::write_results;
 use super::mpc_settings::{MpcSettings, require_slaves_of_first_order};
 use super::node_relation::{FollowingComponents, NodeRelation, can_follow};
 use super::relations::Relations;
@@ -29,7 +30,7 @@ use crate::flags::{CONTACT, MASTER, SLAVE};
 use crate::friction;
 use crate::interface::{
     Interface, Roles, SlaveIndex, add_contact_part, check_nodes, find_nodal_h, interfaces, nodal_normals, set_sides,
-    sides, slave_nodes, warnings_of_pairs,
+    sides, slave_nodes, slaves_without_master, unlike_sections, warnings_of_pairs,
 };
 use crate::law::SlipRule;
 use crate::pairs::{Friction, condition_name};
@@ -63,6 +64,7 @@ pub struct MpcInteraction {
     sided: bool,
     free_bodies: FreeBodies,
     warned_of_held: bool,
+    warned_of_untied: bool,
     in_contact: InterfacesInContact,
     messages: Vec<Diagnostic>,
 }
@@ -100,6 +102,7 @@ impl MpcInteraction {
         add_contact_part(part, &interfaces);
         let mut messages = warnings_of_pairs(part, &settings.slaves, &interfaces);
         let mut overlaps = false;
+        messages.extend(unlike_sections(part, &interfaces));
         if !settings.ties() {
             let parts = (&settings.parts, &settings.slaves);
             let (of_start, inside) = settle_all(part, &interfaces, parts, &settings.solver);
@@ -123,6 +126,7 @@ impl MpcInteraction {
             sided: false,
             free_bodies: FreeBodies::default(),
             warned_of_held: false,
+            warned_of_untied: false,
             in_contact: InterfacesInContact::default(),
         })
     }
@@ -362,6 +366,12 @@ impl Interaction for MpcInteraction {
                 let slave = self.states.only_at(node);
                 self.states[slave].law.active = true;
             }
+            if !std::mem::replace(&mut self.warned_of_untied, true) {
+                let slaves = slave_nodes(&self.interfaces);
+                let without: Vec<u32> =
+                    slaves.iter().copied().filter(|node| !self.relations.nodes.contains_key(node)).collect();
+                self.messages.extend(slaves_without_master(part, &without, slaves.len()));
+            }
         } else {
             activation::start(&part.nodes, &mut self.states, ActivationCriterion::ShareOfMeshSize, self.friction.rule);
             friction::start_in_stick(part.info.step, &mut self.states, self.friction.rule, &self.settings.friction);
@@ -377,6 +387,8 @@ impl Interaction for MpcInteraction {
         if self.acting {
             self.in_contact.accept(&self.slaves_by_interface(), &self.states);
         }
+        let sticks = self.settings.kind == MpcKind::Frictional || self.settings.ties();
+        write_results(part, &mut self.states, &self.relations.nodes, &self.friction, sticks);
         Ok(())
     }
 
@@ -404,6 +416,7 @@ impl Interaction for MpcInteraction {
         (self.friction.directions, [self.version, self.friction.graph]) = (saved.directions, saved.versions);
         (self.steps_since_search, self.sided) = (saved.steps_since_search, saved.sided);
         (self.warned_of_held, self.in_contact) = (saved.warned_of_held, saved.in_contact);
+        self.warned_of_untied = true;
         Ok(())
     }
 

@@ -79,6 +79,11 @@ impl SliderForces {
             .collect()
     }
 
+    /// The slave nodes with the friction on them that does not go with the pressure (force).
+    pub(crate) fn forces(&self) -> impl Iterator<Item = (u32, [f64; 3])> + '_ {
+        self.sliders.iter().map(|slider| (slider.node, slider.force))
+    }
+
     /// The nodes whose unknowns the blocks join.
     pub(crate) fn all_nodes(&self) -> &[u32] {
         &self.nodes

@@ -207,6 +207,9 @@ fn interaction(
     };
     let augmentation =
         whole.augmentation.unwrap_or(if formulation.weighted_gaps { Augmentation::Pair } else { Augmentation::Node });
+    if formulations.name == AUGMENTED.name && augmentation == Augmentation::Node {
+        warn_of_penalties(&whole.parameters, request);
+    }
     let tangent_factor = keys.as_ref().map_or(1.0, |keys| keys.tangent_factor);
     let factor = nitsche_factor(settings, whole.nitsche_factor)?;
     let rule = whole.parameters.adaptation_rule.unwrap_or_else(PenaltyRule::usual);
@@ -271,6 +274,19 @@ fn interaction(
     let interaction = ContactInteraction::new(chosen, part)?;
     warning.into_iter().for_each(|warning| request.report.push(warning));
     Ok((whole.model_part_name, interaction))
+}
+
+/// Warns of penalties of the deck where the augmentation of nodes takes none, and contact is the same whatever they are.
+fn warn_of_penalties(parameters: &PenaltyKeys, request: &mut ProcessRequest<'_>) {
+    let Some(given) = request.parameters.get("advance_ALM_parameters") else { return };
+    for (key, acts) in [("adapt_penalty", parameters.adapt_penalty), ("penalty", parameters.manual)] {
+        if !acts || given.get(key).is_none() {
+            continue;
+        }
+        let fact = format!("\"{key}\" changes nothing: with \"augmentation\": \"node\" no penalty acts on contact");
+        let warning = Diagnostic::warning("key-without-effect", fact).at(given.key_place(key));
+        request.report.push(warning.remedy("take it out, or set \"augmentation\" to \"pair\""));
+    }
 }
 
 /// γ₀ of Nitsche's method; `None` for that of the variant.
@@ -383,5 +399,6 @@ register! { ProcessEntry "alm_contact_process",
     defaults: include_str!("../../../../configs/processes/alm_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/alm_contact_process.json"))],
     build: |request| of_formulations(request, &AUGMENTED),
+    puts: "contact",
     surfaces: super::touching::contact,
 }

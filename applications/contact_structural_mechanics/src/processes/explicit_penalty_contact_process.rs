@@ -15,5 +15,6 @@ register! { ProcessEntry "explicit_penalty_contact_process",
     defaults: include_str!("../../../../configs/processes/explicit_penalty_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/explicit_penalty_contact_process.json"))],
     build: |request| of_formulations(request, &EXPLICIT),
+    puts: "contact",
     surfaces: super::touching::contact,
 }

@@ -114,5 +114,6 @@ register! { ProcessEntry "mesh_tying_process",
     defaults: include_str!("../../../../configs/processes/mesh_tying_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/mesh_tying_process.json"))],
     build: build,
+    puts: "a tie",
     surfaces: super::touching::ties,
 }

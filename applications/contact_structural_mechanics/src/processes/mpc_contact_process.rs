@@ -91,5 +91,6 @@ register! { ProcessEntry "mpc_contact_process",
     defaults: include_str!("../../../../configs/processes/mpc_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/mpc_contact_process.json"))],
     build: build,
+    puts: "contact",
     surfaces: super::touching::contact,
 }

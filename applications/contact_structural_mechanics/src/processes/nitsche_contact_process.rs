@@ -13,5 +13,6 @@ register! { ProcessEntry "nitsche_contact_process",
     source: "Chouly, Hild and Renard (2015)",
     defaults: include_str!("../../../../configs/processes/nitsche_contact_process.json"),
     build: |request| of_formulations(request, &NITSCHE),
+    puts: "contact",
     surfaces: super::touching::contact,
 }

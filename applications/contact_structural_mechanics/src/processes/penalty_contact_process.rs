@@ -15,5 +15,6 @@ register! { ProcessEntry "penalty_contact_process",
     defaults: include_str!("../../../../configs/processes/penalty_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/penalty_contact_process.json"))],
     build: |request| of_formulations(request, &PENALTY),
+    puts: "contact",
     surfaces: super::touching::contact,
 }

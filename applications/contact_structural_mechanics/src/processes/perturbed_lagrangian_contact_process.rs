@@ -15,5 +15,6 @@ register! { ProcessEntry "perturbed_lagrangian_contact_process",
     defaults: include_str!("../../../../configs/processes/perturbed_lagrangian_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/perturbed_lagrangian_contact_process.json"))],
     build: |request| of_formulations(request, &FORMULATIONS),
+    puts: "contact",
     surfaces: super::touching::contact,
 }

@@ -14,5 +14,6 @@ register! { ProcessEntry "uzawa_contact_process",
     defaults: include_str!("../../../../configs/processes/uzawa_contact_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/uzawa_contact_process.json"))],
     build: |request| of_formulations(request, &FORMULATIONS),
+    puts: "contact",
     surfaces: super::touching::contact,
 }

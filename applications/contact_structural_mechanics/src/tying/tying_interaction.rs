@@ -18,7 +18,7 @@ use crate::active_set::{FacetsOfPair, Holding};
 use crate::flags::CONTACT;
 use crate::interface::{
     Fixed, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex, add_contact_part, alm_parameters,
-    find_nodal_h, interfaces, nodal_normals, warnings_of_pairs,
+    find_nodal_h, interfaces, nodal_normals, slaves_without_master, unlike_sections, warnings_of_pairs,
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{
@@ -113,8 +113,10 @@ impl TyingInteraction {
     pub fn new(settings: TyingSettings, part: &mut ModelPart) -> Result<Self> {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         add_contact_part(part, &interfaces);
+        let mut messages = warnings_of_pairs(part, &settings.slaves, &interfaces);
+        messages.extend(unlike_sections(part, &interfaces));
         Ok(Self {
-            messages: warnings_of_pairs(part, &settings.slaves, &interfaces),
+            messages,
             settings,
             patches: Patches::default(),
             table: SlaveTable::default(),
@@ -164,14 +166,7 @@ impl TyingInteraction {
             .filter(|slave| !tied[slave.place()])
             .map(|slave| self.patches.mesh_node(slave))
             .collect();
-        let first = part.nodes.ids[*without.first()? as usize];
-        let fact = format!(
-            "{} of {} slave nodes of the tie face no master and are not tied, the first is node {first}",
-            without.len(),
-            tied.len()
-        );
-        let remedy = "end the slave part where the master ends, or check that both surfaces meet";
-        Some(Diagnostic::warning("slaves-not-tied", fact).remedy(remedy))
+        slaves_without_master(part, &without, tied.len())
     }
 
     /// Normals of the slave nodes in the present configuration.

@@ -8,12 +8,13 @@
 use std::marker::PhantomData;
 
 use zelus_core::diagnostics::{Diagnostic, Result};
-use zelus_core::entities::{BlockRequest, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{AssumedSmall, BlockRequest, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want};
 use zelus_core::geometry::{Shape, ShapeTable};
 
 use super::gradients::{nodal_vectors, physical_gradients};
 use super::material::Material;
 use super::results;
+use super::small_motion::small_motion;
 use crate::laws::{ConstitutiveLaw, LawFactory, MakesLaw, Matrix, StrainState, StressMeasure};
 use crate::tensor::IDENTITY;
 use crate::variables::{DISPLACEMENT, VOLUME_ACCELERATION, VOLUMETRIC_STRAIN};
@@ -87,6 +88,7 @@ pub struct Matter<'a, const DIM: usize, const S: usize> {
 
 /// Element of displacements and volumetric strain with `NODES` nodes in `DIM` dimensions and `S` strains.
 pub struct MixedVolumetricStrain<F, const NODES: usize, const DIM: usize, const S: usize> {
+    shape: Shape,
     materials: Vec<Material<S>>,
     tangent: Tangent,
     form: PhantomData<fn() -> F>,
@@ -171,7 +173,7 @@ where
         materials.iter_mut().for_each(|material| material.rule = ShapeTable::get(shape, ORDER));
         let constant = !F::FINITE && materials.iter().all(|m| m.law.is_linear());
         let tangent = if constant { Tangent::Constant } else { Tangent::General };
-        Ok(Self { materials, tangent, form: PhantomData })
+        Ok(Self { shape, materials, tangent, form: PhantomData })
     }
 
     fn fits(&self, own: &Self::State, saved: &Self::State) -> bool {
@@ -291,6 +293,10 @@ where
 
     fn gauss_variables() -> &'static [&'static str] {
         results::VARIABLES
+    }
+
+    fn assumed_small(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Option<AssumedSmall> {
+        (!F::FINITE).then(|| small_motion::<NODES, DIM>(self.shape, entity, view))
     }
 }
 

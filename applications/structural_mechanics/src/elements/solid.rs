@@ -11,16 +11,20 @@ mod traction;
 use std::f64::consts::PI;
 use std::marker::PhantomData;
 
-use zelus_core::diagnostics::Result;
-use zelus_core::entities::{BlockRequest, FacePoint, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::diagnostics::{Diagnostic, Result};
+use zelus_core::entities::{
+    AssumedSmall, BlockRequest, FacePoint, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want,
+};
 use zelus_core::geometry::{Shape, ShapeTable};
 
 use self::kinematics::{Motion, radius};
 use super::band::{self, BANDS_AS_KRATOS};
 use super::formulation::Formulation;
 use super::gradients::{displacements, nodal_vectors, physical_gradients};
+use super::locking::locking;
 use super::material::Material;
 use super::results;
+use super::small_motion::small_motion;
 use super::stiffness::add_stiffness;
 use crate::laws::{LawFactory, MakesLaw, StrainState};
 use crate::tensor::{inverse, stress_vector};
@@ -286,6 +290,15 @@ where
 
     fn gauss_variables() -> &'static [&'static str] {
         results::VARIABLES
+    }
+
+    fn warnings(request: &BlockRequest<'_>) -> Vec<Diagnostic> {
+        let averages_volume = F::MEAN_DILATATION || F::CONSTANT_PRESSURE;
+        if averages_volume { Vec::new() } else { locking(request, F::FINITE).into_iter().collect() }
+    }
+
+    fn assumed_small(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Option<AssumedSmall> {
+        (!F::FINITE).then(|| small_motion::<NODES, DIM>(self.shape, entity, view))
     }
 
     fn lacks_tractions(&self, entity: &Gather<'_, NODES>) -> Option<&'static str> {

@@ -122,7 +122,12 @@ impl Stage {
     }
 
     fn accept(&mut self, run: &mut RunContext<'_>) -> Result<()> {
-        self.strategy.accept_step(run.model.root_mut(&self.root)?, &mut self.system)?;
+        let part = run.model.root_mut(&self.root)?;
+        self.strategy.accept_step(part, &mut self.system)?;
+        // Explicit steps are many and short: the state at their end tells.
+        if !part.info.solver.explicit {
+            self.largest.see(part, &self.system);
+        }
         run.monitor.phase("output");
         let start = Instant::now();
         let ranks = run.model.ranks.clone();

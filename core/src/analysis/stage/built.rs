@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use zelus_linear_algebra::memory;
 
+use super::super::contents::Contents;
 use super::super::deck::{Folders, make_processes};
 use super::super::report::Sizes;
 use super::super::sharing::read_the_same_files;
@@ -22,8 +23,9 @@ use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::Interaction;
 use crate::io::{FileUse, Mark, check_files};
 use crate::model::{Model, ModelPart};
-use crate::parameters::Node;
-use crate::processes::Process;
+use crate::parameters::{Interval, Node};
+use crate::partition::{Surface, surfaces, warnings_of_repeated_pairs};
+use crate::processes::{Process, TimeTable, time_tables_of};
 use crate::strategies::{Monitor, SolutionStrategy, unknowns_of_all};
 
 /// Bytes that a node takes in a picture at least: its displacement, compressed.
@@ -43,10 +45,16 @@ pub(super) struct BuiltStage {
     pub system: System,
     /// The solution strategy.
     pub strategy: Box<dyn SolutionStrategy>,
+    /// Surfaces that processes of the deck couple, pair by pair.
+    pub surfaces: Vec<Surface>,
+    /// Tables over time that its processes read.
+    pub tables: Vec<TimeTable>,
     /// Processes in the order in which they act.
     pub processes: Vec<Box<dyn Process>>,
     /// Files that it reads and writes.
     pub files: Vec<FileUse>,
+    /// Digests of those it reads that decide results, beside deck and mesh.
+    pub contents: Contents,
     /// Notes and warnings found so far.
     pub warnings: Report,
 }
@@ -64,7 +72,7 @@ impl BuiltStage {
         outputs: &[PathBuf],
         run: &mut RunContext<'_>,
     ) -> Result<Self> {
-        let SharedStage { parsed, is_whole, inputs } = shared;
+        let SharedStage { parsed, is_whole, inputs, mut contents } = shared;
         let ParsedStage { stage, deck, solver, root, schedule, mut problems, .. } = parsed;
         let ranks = run.model.ranks.clone();
         let mut processes = make_processes(&deck, folders, run.model, run.driver, &mut problems);
@@ -80,6 +88,8 @@ impl BuiltStage {
         messages_of(&mut processes, &mut system).into_iter().for_each(|message| problems.push(message));
         let mut files: Vec<FileUse> = processes.iter().flat_map(|process| process.files()).collect();
         read_the_same_files(&ranks, &files)?;
+        contents.extend(processes.iter().flat_map(|process| process.decisive_files()));
+        let contents = Contents::of(&contents, &folders.deck);
         files.extend(inputs);
         run.report.inputs = files.iter().filter_map(FileUse::input).map(Path::to_owned).collect();
         files.extend(outputs.iter().cloned().map(|path| FileUse::Writes(path, Mark::None)));
@@ -90,8 +100,24 @@ impl BuiltStage {
         run.monitor.note(&says);
         run.report.linear_solver = says;
         run.report.sizes = sizes_of(part, &system);
-        let (name, warnings) = (stage.name.clone(), problems);
-        Ok(Self { name, root, schedule, solver, system, strategy, processes, files, warnings })
+        warnings_of_repeated_pairs(&deck, part).into_iter().for_each(|warning| problems.push(warning));
+        let (name, warnings, surfaces) = (stage.name.clone(), problems, surfaces(&deck, part));
+        let mut tables: Vec<TimeTable> = processes.iter().flat_map(|process| process.time_tables()).collect();
+        deck.get("processes").into_iter().for_each(|lists| time_tables_of(lists, Interval::ALWAYS, &mut tables));
+        Ok(Self {
+            name,
+            root,
+            schedule,
+            solver,
+            system,
+            strategy,
+            surfaces,
+            tables,
+            processes,
+            files,
+            contents,
+            warnings,
+        })
     }
 }
 

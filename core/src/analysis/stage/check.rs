@@ -3,8 +3,11 @@
 use super::super::bodies::tell_what_holds;
 use super::super::body_loads::{warn_of_body_loads, warn_of_no_inertia};
 use super::super::no_load::warn_of_no_load;
+use super::super::coincident_nodes::warn_of_coincident_nodes;
 use super::super::solver::TimeScheme;
-use super::super::soundness::{prescriptions, warn_of_contradictions, warn_of_loads_given_twice, warn_of_twins};
+use super::super::soundness::{
+    prescriptions, warn_of_collapsed, warn_of_contradictions, warn_of_loads_given_twice, warn_of_twins,
+};
 use super::built::BuiltStage;
 use super::problems::problems_of_all;
 use crate::diagnostics::{Diagnostic, Result};
@@ -15,7 +18,7 @@ use crate::model::Model;
 /// # Errors
 /// Contradictions of processes, loads and supports, and other problems that they find, gathered.
 pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>> {
-    let BuiltStage { root, schedule, solver, system, processes, .. } = built;
+    let BuiltStage { root, schedule, solver, system, processes, surfaces, tables, .. } = built;
     let mut problems = built.warnings.clone();
     for process in processes {
         let checked = process.check(model, system, &mut problems);
@@ -27,7 +30,13 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
         problem.into_iter().for_each(|problem| problems.push(problem));
     }
     let middle = 0.5 * (schedule.start_time + schedule.end_time);
+    let early = tables.iter().filter_map(|table| table.ends_early(schedule.interval()));
+    early.for_each(|problem| problems.push(problem));
+    let of_blocks = system.elements.iter().chain(&system.conditions).flat_map(|block| block.warnings());
+    of_blocks.for_each(|warning| problems.push(warning.clone()));
+    warn_of_collapsed(part, &mut problems);
     warn_of_twins(part, &mut problems);
+    warn_of_coincident_nodes(part, surfaces, &mut problems);
     warn_of_loads_given_twice(part, processes, &mut problems);
     warn_of_body_loads(part, processes, &mut problems);
     warn_of_contradictions(part, processes, [middle, schedule.end_time], &mut problems);

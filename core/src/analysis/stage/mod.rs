@@ -18,12 +18,14 @@ mod shared;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use super::contents::Contents;
 use super::driver::{Driver, Point};
+use super::large_motion::LargeMotion;
 use super::report::RunReport;
 use super::saved_run::{SavedStage, hand_out, resume_blocks, states_of};
 use crate::assembly::System;
 use crate::communication::Ranks;
-use crate::diagnostics::{Report, Result, unfit};
+use crate::diagnostics::{Diagnostic, Report, Result, unfit};
 use crate::io::{Claim, FileUse};
 use crate::model::Model;
 use crate::processes::{Process, largest_results};
@@ -51,6 +53,10 @@ pub(super) struct Stage {
     strategy: Box<dyn SolutionStrategy>,
     processes: Vec<Box<dyn Process>>,
     files: Vec<FileUse>,
+    /// Digests of what it has read beside deck and mesh.
+    contents: Contents,
+    /// Largest displacement and strain of the accepted steps.
+    largest: LargeMotion,
     /// The outputs that no other run may write meanwhile; `None` before the first step.
     claims: Option<Vec<Claim>>,
     begun: bool,
@@ -80,7 +86,7 @@ impl Stage {
 
     /// A stage before its first step.
     fn new(built: BuiltStage) -> Self {
-        let BuiltStage { name, root, schedule, system, strategy, processes, files, .. } = built;
+        let BuiltStage { name, root, schedule, system, strategy, processes, files, contents, .. } = built;
         Self {
             name,
             root,
@@ -90,6 +96,8 @@ impl Stage {
             strategy,
             processes,
             files,
+            contents,
+            largest: LargeMotion::default(),
             claims: None,
             begun: false,
         }
@@ -138,10 +146,16 @@ impl Stage {
         self.processes.iter_mut().filter_map(|process| process.saves(model)).collect()
     }
 
+    /// Whether one of its processes saves the run now and then.
+    pub(super) fn saves_runs(&self) -> bool {
+        self.processes.iter().any(|process| process.saves_runs())
+    }
+
     /// State between steps.
     pub(super) fn state(&self) -> SavedStage {
         SavedStage {
             begun: self.begun,
+            contents: self.contents.clone(),
             first_length: self.first_length,
             unknowns: self.system.dofs.layout(),
             strategy: self.strategy.state(),
@@ -157,6 +171,7 @@ impl Stage {
     /// # Errors
     /// States of another deck; files of output that are not there any more.
     pub(super) fn resume(&mut self, model: &mut Model, state: SavedStage) -> Result<()> {
+        self.contents.check(&state.contents)?;
         (self.begun, self.first_length) = (state.begun, state.first_length);
         let part = model.root_mut(&self.root)?;
         let begins = !self.begun || part.info.time >= self.schedule.start_time && part.info.time.is_finite();
@@ -195,7 +210,9 @@ impl Stage {
                     .note(&format!("{ends}: \"last_step\": \"shortened\" in \"time_stepping\" would end it there"));
             }
             let last = self.system.interactions.iter().flat_map(|interaction| interaction.last_messages(part));
-            let last = last.chain(self.strategy.last_messages(part)).collect();
+            let mut last: Vec<Diagnostic> = last.chain(self.strategy.last_messages(part)).collect();
+            self.largest.see(part, &self.system);
+            last.extend(self.largest.warnings(part));
             tell(part.ranks.problems_of_all(last), run.report, run.monitor);
             return Ok(false);
         }

@@ -117,6 +117,14 @@ fn times_of(deck: &Node, problems: &mut Report) -> Option<(f64, f64)> {
             problems.push(problem.remedy("use \"OpenMP\" or \"MPI\""));
         }
     }
+    if let Some(minutes) = data.get("autosave_minutes")
+        && let Some(number) = problems.absorb(minutes.f64())
+        && number < 0.0
+    {
+        let fact = format!("\"autosave_minutes\" is {number}, it must be 0 or more");
+        let problem = Diagnostic::error("out-of-range", fact).at(minutes.place());
+        problems.push(problem.remedy("write the minutes of the clock after which the run saves itself, 0 for never"));
+    }
     let (start, end) = start.zip(end)?;
     if end <= start {
         let fact = format!("\"end_time\" {end} is not after \"start_time\" {start}: there is no step to make");

@@ -1,6 +1,6 @@
 //! Third phase of a stage's preparation: the ranks share the mesh.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use zelus_linear_algebra::memory;
 
@@ -26,6 +26,8 @@ pub(super) struct SharedStage<'a> {
     pub is_whole: bool,
     /// Files that the stage reads.
     pub inputs: Vec<FileUse>,
+    /// Those that decide results, beside deck and mesh: materials and tables.
+    pub contents: Vec<PathBuf>,
 }
 
 impl<'a> SharedStage<'a> {
@@ -52,6 +54,8 @@ impl<'a> SharedStage<'a> {
             read_the_same_files(&ranks, &of_mesh)?;
         }
         inputs.extend(of_mesh);
+        let mut contents: Vec<PathBuf> = materials_file(deck, folder).into_iter().collect();
+        tables_of(deck, &mut contents);
         if has_mesh {
             distribute(run.model, root, &decks, changes, run.monitor)?;
         }
@@ -61,15 +65,14 @@ impl<'a> SharedStage<'a> {
         if is_whole && !problems.has_errors() {
             run.driver.at(Point::Read, root, run.model, &System::default(), &mut |_| Ok(()))?;
         }
-        Ok(Self { parsed, is_whole, inputs })
+        Ok(Self { parsed, is_whole, inputs, contents })
     }
 }
 
 /// Meshes and materials that a stage reads.
 fn mesh_files(deck: &Node, modelers: &[Node], folder: &Path) -> Vec<FileUse> {
-    let named = |key: &str| deck.get_path(key).and_then(Node::as_str).filter(|name| !name.is_empty());
     let mesh = deck.get("solver_settings").and_then(|solver| mesh_file(solver, folder)).map(|(_, file)| file);
-    let materials = named("solver_settings.material_import_settings.materials_filename").map(|name| folder.join(name));
+    let materials = materials_file(deck, folder);
     let of_modeler = |modeler: &Node| {
         let parameters = modeler.get("parameters").or_else(|| modeler.get("Parameters"))?;
         let name = parameters.get("input_filename")?.as_str()?;
@@ -77,6 +80,12 @@ fn mesh_files(deck: &Node, modelers: &[Node], folder: &Path) -> Vec<FileUse> {
     };
     let meshes = modelers.iter().filter_map(of_modeler);
     mesh.into_iter().chain(materials).chain(meshes).map(FileUse::Reads).collect()
+}
+
+/// The materials file that a deck names.
+fn materials_file(deck: &Node, folder: &Path) -> Option<PathBuf> {
+    let name = deck.get_path("solver_settings.material_import_settings.materials_filename").and_then(Node::as_str)?;
+    (!name.is_empty()).then(|| folder.join(name))
 }
 
 /// The deck of a stage, and the tables that it names.

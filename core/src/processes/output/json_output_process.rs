@@ -13,7 +13,7 @@ use super::gauss;
 use super::place::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::assembly::System;
-use crate::diagnostics::{Result, unfit};
+use crate::diagnostics::{Diagnostic, Place, Result, unfit};
 use crate::entities::Gauss;
 use crate::io::{FileUse, Mark, replace_file};
 use crate::model::{Flags, Model, ModelPart, Role, SubPart};
@@ -27,6 +27,8 @@ const REWRITE: Duration = Duration::from_secs(10);
 /// Keeps histories in memory and writes them as one file.
 struct JsonOutput {
     part: PartPath,
+    /// Where the deck names what is written.
+    place: Place,
     file: PathBuf,
     counter: TimeCounter,
     quantities: Vec<Quantity>,
@@ -37,6 +39,7 @@ struct JsonOutput {
     by_coordinates: bool,
     series: Histories,
     last_write: Option<Instant>,
+    messages: Vec<Diagnostic>,
 }
 
 /// Samples so far.
@@ -86,6 +89,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = &request.settings_with(|defaults: Defaults| defaults.require(&required))?;
     Ok(Box::new(JsonOutput {
         part: PartPath::new(settings)?,
+        place: settings.key_place("output_variables"),
         file: file_of(settings, "output_file_name", request.results, "")?,
         counter: TimeCounter::new(settings)?,
         quantities: Quantity::list(settings, "output_variables", request.report)?,
@@ -96,6 +100,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         by_coordinates: settings.get_bool("use_node_coordinates")?,
         series: Histories::default(),
         last_write: None,
+        messages: Vec::new(),
     }))
 }
 
@@ -355,12 +360,21 @@ impl Process for JsonOutput {
     fn end_step(&mut self, model: &mut Model, system: &System) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
         if self.counter.acts(&part.info) {
+            if self.series.times.is_empty() {
+                let missing =
+                    self.quantities.iter().filter_map(|quantity| quantity.missing(part, "json_output_process"));
+                self.messages = missing.map(|warning| warning.at(self.place.clone())).collect();
+            }
             self.sample(part, system, selection);
             if self.last_write.is_none_or(|last| last.elapsed() > REWRITE) {
                 self.write(model)?;
             }
         }
         Ok(())
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.messages)
     }
 
     fn state(&self) -> Option<Box<dyn State>> {

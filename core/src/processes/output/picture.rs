@@ -78,6 +78,14 @@ pub fn usual_results(part: &ModelPart, system: &System) -> Dataset {
     mesh.data
 }
 
+/// Whether elements of all ranks have several sets of properties; collective.
+fn has_several_materials(part: &ModelPart) -> bool {
+    let own = &part.elements.properties;
+    let ends = own.iter().min().into_iter().chain(own.iter().max()).map(|&id| id as f64).collect::<Vec<f64>>();
+    let all = part.ranks.gather_numbers(&ends).concat();
+    all.iter().any(|id| *id != all[0])
+}
+
 /// Marks of nodes that any rank has set; collective.
 fn of_all(part: &ModelPart, marks: &[bool]) -> Vec<bool> {
     let Some(share) = &part.share else { return marks.to_vec() };
@@ -211,7 +219,10 @@ impl Picture {
         };
         let mut out: Vec<Column> = quantities.iter().map(|q| q.gather(&table.data, &mesh.cells)).collect();
         out.extend(flags.iter().map(|flag| flag_column(&table.flags, flag, &mesh.cells)));
-        out.extend(self.gauss.iter().map(|quantity| gauss::means(part, system, mesh.kind, &mesh.cells, quantity)));
+        // Nodal values are means across the interfaces of materials, where stresses jump; those of cells are not.
+        let usual = if self.usual && has_several_materials(part) { usual::gauss(part, system) } else { Vec::new() };
+        let of_cells = self.gauss.iter().chain(&usual);
+        out.extend(of_cells.map(|quantity| gauss::means(part, system, mesh.kind, &mesh.cells, quantity)));
         if self.ids || self.usual {
             out.push(Column::ids("PROPERTIES_ID", &mesh.data.cells.properties));
         }

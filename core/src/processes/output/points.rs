@@ -31,6 +31,7 @@ pub(super) struct PointsOutput {
     source: Option<PathBuf>,
     /// Whether the files hold their heads.
     begun: bool,
+    messages: Vec<Diagnostic>,
 }
 
 struct Point {
@@ -84,6 +85,7 @@ pub(super) fn points_output(
         points: positions.iter().enumerate().map(point).collect(),
         source: settings.node().get("csv_file_path").and_then(Node::as_str).map(|name| request.folder.join(name)),
         begun: false,
+        messages: Vec::new(),
     }))
 }
 
@@ -225,6 +227,8 @@ impl Process for PointsOutput {
                 replace_file(&part.ranks, &point.file, |out| writeln!(out, "{}", self.head(part, point)))
             })?;
             self.begun = true;
+            let missing = self.quantities.iter().filter_map(|quantity| quantity.missing(part, "output at points"));
+            self.messages = missing.map(|warning| warning.at(self.place.clone())).collect();
         }
         let own = self.points.iter().enumerate().filter(|(_, point)| !point.weights.is_empty());
         let mut message = Vec::new();
@@ -244,6 +248,10 @@ impl Process for PointsOutput {
             }
         }
         Ok(())
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.messages)
     }
 
     fn state(&self) -> Option<Box<dyn State>> {

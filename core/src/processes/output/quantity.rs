@@ -47,6 +47,18 @@ impl Quantity {
         if self.column(asked).is_none() && self.column(other).is_some() { other } else { asked }
     }
 
+    /// The warning that nodes have it in no column, so that it reads as zero; `by` names the process.
+    pub(super) fn missing(&self, part: &ModelPart, by: &str) -> Option<Diagnostic> {
+        let column = self.variable.column().0;
+        if part.nodes.history.has(column) || part.nodes.values.has(column) {
+            return None;
+        }
+        let fact = format!("{by} writes {} as zeros: nodes have no such values", self.name);
+        let remedy =
+            "take it out of \"output_variables\", or name it in \"gauss_points_output_variables\" if elements know it";
+        Some(Diagnostic::warning("no-values", fact).remedy(remedy))
+    }
+
     /// How many numbers it takes; a quantity that is nowhere stored reads as zero.
     pub(super) fn components(&self, fields: &Fields) -> usize {
         match self.variable {

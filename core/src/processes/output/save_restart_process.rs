@@ -109,6 +109,10 @@ impl Process for SaveRestart {
         self.part.find(model).map(|_| ())
     }
 
+    fn saves_runs(&self) -> bool {
+        true
+    }
+
     fn saves(&mut self, model: &Model) -> Option<PathBuf> {
         let info = &self.part.find(model).ok()?.0.info;
         let (step, time) = (info.step as f64, info.time);
