@@ -24,4 +24,7 @@ pub mod analysis;
 pub use diagnostics::{Error, Result};
 #[doc(hidden)]
 pub use inventory;
-pub use zelus_linear_algebra::{Carrier, Components, State, Unknowns, WrongState, packed, parallel, stored_as_bytes};
+pub use zelus_linear_algebra::{
+    BlockPivoting, Carrier, Complementarity, Components, Exchange, State, Unknowns, WrongState, packed, parallel,
+    stored_as_bytes,
+};

@@ -49,6 +49,11 @@ mod multigrid;
 mod condition;
 mod rank;
 
+mod block_pivoting;
+mod complementarity;
+
+pub use block_pivoting::{BlockPivoting, Exchange};
+pub use complementarity::Complementarity;
 pub use components::Components;
 pub use condensation::{Condensation, CondensationSettings, NotCondensable};
 pub use condition::{Spectrum, condition_number};

@@ -87,6 +87,10 @@ impl LinearSolver for LuSolver {
         "sparse_lu"
     }
 
+    fn keeps_factors(&self, _: usize, _: usize) -> bool {
+        true
+    }
+
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError> {
         check::input(system, rhs, x)?;
         let start = Instant::now();

@@ -445,6 +445,10 @@ impl LinearSolver for MultigridSolver {
         self.shares(equations, entries) || self.stand_in.takes_held(equations, entries)
     }
 
+    fn keeps_factors(&self, equations: usize, entries: usize) -> bool {
+        !self.shares(equations, entries)
+    }
+
     fn shares(&self, equations: usize, entries: usize) -> bool {
         let has_given_up = self.learnt.has_yielded || self.learnt.failures >= FAILURES;
         !has_given_up && self.is_large(equations, entries)

@@ -121,6 +121,11 @@ pub trait LinearSolver: Send {
         false
     }
 
+    /// Whether further solves with the last matrix, of this size, only substitute into its factors.
+    fn keeps_factors(&self, _equations: usize, _entries: usize) -> bool {
+        false
+    }
+
     /// Whether it solves systems of this size, over all ranks, where their rows are ([`System::shared`]).
     fn shares(&self, _equations: usize, _entries: usize) -> bool {
         false

@@ -11,6 +11,7 @@ mod condensation;
 mod corners;
 mod free_bodies;
 mod interface_surfaces;
+mod lift_off;
 mod like_kratos;
 mod methods;
 mod mpc;

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::State;
 
 use super::block::EntityBlock;
+use super::complementary::Complementary;
 use super::join::Join;
 use super::pair_state::PairState;
 use crate::diagnostics::{Diagnostic, Result};
@@ -47,6 +48,8 @@ pub enum Outer {
     Widened(String),
     /// The step is solved, but a shorter one would be better, and why.
     Coarse(String),
+    /// The interaction's conditions are to be decided together, see [`ActiveSet::complementary`].
+    Together,
     /// The outer loop does not come to an end, and why.
     Failed(String),
 }
@@ -264,6 +267,11 @@ pub trait ActiveSet {
     /// A geometry that cannot be computed with.
     fn after_convergence(&mut self, _part: &mut ModelPart) -> Result<Outer> {
         Ok(Outer::Done)
+    }
+
+    /// Its conditions that one linear complementarity problem decides on; it asks for that by [`Outer::Together`].
+    fn complementary(&mut self) -> Option<&mut dyn Complementary> {
+        None
     }
 
     /// The system is singular: activates contact of bodies that are free to move; `false` where there is none, or no more.

@@ -6,6 +6,7 @@
 mod assumed_small;
 mod block;
 mod block_state;
+mod complementary;
 mod constraint_entry;
 mod face_point;
 mod interaction;
@@ -18,6 +19,7 @@ mod view;
 pub use assumed_small::AssumedSmall;
 pub use block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalOwner, LocalSystems, LocalUnknown, Tangent, Want};
 pub(crate) use block_state::regroup;
+pub use complementary::{Complementary, ComplementaryCondition, Responses};
 pub use constraint_entry::{ConstraintEntry, ConstraintFactory, ConstraintRow};
 pub use face_point::FacePoint;
 pub use interaction::{

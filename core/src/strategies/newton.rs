@@ -1,5 +1,6 @@
 //! Newton's iteration of one step, semi-smooth where an active set changes.
 
+mod complementary;
 mod followers;
 mod iteration;
 mod lost_body;

@@ -366,6 +366,10 @@ impl LinearSolver for DirectSolver {
         equations > SPARSE_LU_LIMIT.max(self.settings.dense_below)
     }
 
+    fn keeps_factors(&self, _: usize, _: usize) -> bool {
+        true
+    }
+
     /// Factors of an interface whose coupling has changed since would be iterated with.
     fn forget(&mut self) {
         if let Some((_, Path::Interface(_, interface), _)) = &mut self.current {

@@ -2,12 +2,14 @@
 //!
 //! A set that returns after others is a cycle: Newton's iteration would run through it for ever, because states change before
 //! displacements have followed. From then on, and from a limit of iterations on, states change in converged states only: the set is
-//! held until the iteration has converged with it, then the rules decide on an equilibrium. Where that comes back to a set too, no set
-//! fulfils all conditions at the resolution of the mesh; that one is taken which violates them least, if that is little, and the step
-//! fails otherwise.
+//! held until the iteration has converged with it, then the rules decide on an equilibrium. Where that comes back to a set too, or
+//! takes long, open and closed nodes are exchanged by block principal pivoting, which is finite. Stick and slip have no such method:
+//! where their sets come back, no set fulfils all conditions at the resolution of the mesh; that one is taken which violates them least,
+//! if that is little, and the step fails otherwise.
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
+use zelus_core::{BlockPivoting, Exchange};
 
 use crate::interface::SlaveIndex;
 use crate::law::{Decision, NodeState};
@@ -18,6 +20,8 @@ const LONGEST: usize = 6;
 const RESTLESS: usize = 15;
 /// Converged states in which a held set may change.
 const MOST_CHANGES: usize = 30;
+/// Converged states of a step in which open and closed nodes are exchanged at most.
+const MOST_EXCHANGES: usize = 500;
 /// Violation, as a share of the largest pressure, that may stay where no set fulfils all conditions.
 pub(crate) const ALLOWED: f64 = 0.01;
 /// Nodes that a warning names.
@@ -45,6 +49,12 @@ pub(crate) struct CycleGuard {
     /// Sets that have converged, with their violation.
     #[serde(skip)]
     converged: Vec<(Vec<NodeState>, f64)>,
+    /// Which open and closed nodes are exchanged.
+    #[serde(skip)]
+    pivoting: BlockPivoting,
+    /// Number of the converged sets when nodes began to be exchanged one by one; `None` while all are.
+    #[serde(skip)]
+    single_from: Option<usize>,
     warned: bool,
 }
 
@@ -99,8 +109,9 @@ impl CycleGuard {
     /// Outcome of the decisions in a converged state with a held set, of which it may take back a part; `before` is
     /// that set, `largest` the largest pressure.
     ///
-    /// All states change as they want to, unless that leads back to a set that has converged before. Then one node changes,
-    /// that which is violated most of those that lead to a new set.
+    /// All states change as they want to, unless that leads back to a set that has converged before. Then open and closed nodes are
+    /// exchanged by block principal pivoting; of nodes that stick and slip one changes, that which is violated most of those that lead
+    /// to a new set.
     pub(crate) fn settle(
         &mut self,
         decisions: &mut [(SlaveIndex, Decision)],
@@ -116,15 +127,21 @@ impl CycleGuard {
         let violation = decisions[changing[0]].1.excess;
         let share = if largest > 0.0 { violation / largest } else { 1.0 };
         self.converged.push((before.to_vec(), share));
-        let is_known = |set: &[NodeState]| self.converged.iter().any(|(known, _)| known == set);
         let wanted: Vec<NodeState> = decisions.iter().map(|(_, decision)| decision.state).collect();
-        if !is_known(&wanted) && self.converged.len() < MOST_CHANGES {
+        let comes_back = self.has_converged(&wanted, 0);
+        if !comes_back && self.converged.len() < MOST_CHANGES {
+            return SetOutcome::Change;
+        }
+        // One node that alternates alone has no state at all.
+        let is_endless = comes_back && changing.len() == 1;
+        let opens = |&at: &usize| decisions[at].1.state.is_active() != before[at].is_active();
+        if !is_endless && changing.iter().all(opens) && self.exchange(&changing, before, &wanted, decisions) {
             return SetOutcome::Change;
         }
         let single = |&at: &usize| {
             let mut set = before.to_vec();
             set[at] = wanted[at];
-            !is_known(&set)
+            !self.has_converged(&set, 0)
         };
         if let Some(one) = changing.iter().copied().find(single).filter(|_| self.converged.len() < MOST_CHANGES) {
             for at in changing.into_iter().filter(|&at| at != one) {
@@ -144,6 +161,41 @@ impl CycleGuard {
         SetOutcome::Failed(format!(
             "contact at {word} {nodes} does not settle (no consistent active set); violation {share:.2} × the largest pressure"
         ))
+    }
+
+    /// Whether a set has converged before, since `from` others had.
+    fn has_converged(&self, set: &[NodeState], from: usize) -> bool {
+        self.converged[from..].iter().any(|(known, _)| known == set)
+    }
+
+    /// Takes back all changes of open and closed nodes but those that block principal pivoting exchanges; `false` where that does not
+    /// come to an end.
+    fn exchange(
+        &mut self,
+        changing: &[usize],
+        before: &[NodeState],
+        wanted: &[NodeState],
+        decisions: &mut [(SlaveIndex, Decision)],
+    ) -> bool {
+        if self.converged.len() >= MOST_EXCHANGES {
+            return false;
+        }
+        if self.pivoting.next(changing.len()) == Exchange::All {
+            self.single_from = None;
+            return true;
+        }
+        let last = changing.iter().copied().max().expect("nodes that change");
+        let mut set = before.to_vec();
+        set[last] = wanted[last];
+        let from = *self.single_from.get_or_insert(self.converged.len() - 1);
+        // Single exchanges come back to a set where the conditions have no unique solution.
+        if self.has_converged(&set, from) {
+            return false;
+        }
+        for &at in changing.iter().filter(|&&at| at != last) {
+            decisions[at].1.stay(before[at], before[at]);
+        }
+        true
     }
 
     /// Iterations after which the sets repeat, seen twice over.
@@ -227,6 +279,53 @@ mod tests {
         wanted[1].1.excess = 2.0;
         assert_eq!(guard.settle(&mut wanted, &other, 1.0, &IDS), SetOutcome::Change);
         assert_eq!(wanted.iter().map(|(_, d)| d.state).collect::<Vec<_>>(), [Slip, Stick, Stick]);
+    }
+
+    /// Lets a guard settle sets, from all nodes open, by what they want; the set at rest and the number of sets, if it comes to rest.
+    fn settled(count: usize, wants: impl Fn(&[NodeState]) -> Vec<NodeState>) -> Option<(Vec<NodeState>, usize)> {
+        let (mut guard, mut set) = (CycleGuard::default(), vec![Inactive; count]);
+        for round in 0.. {
+            let mut wanted = decisions(&wants(&set), 1.0);
+            match guard.settle(&mut wanted, &set, 1.0, &IDS) {
+                SetOutcome::Done => return Some((set, round)),
+                SetOutcome::Failed(_) => return None,
+                SetOutcome::Change => set = wanted.iter().map(|(_, decision)| decision.state).collect(),
+            }
+        }
+        None
+    }
+
+    fn exchanged(state: NodeState) -> NodeState {
+        if state.is_active() { Inactive } else { Slip }
+    }
+
+    #[test]
+    fn nodes_that_change_one_after_the_other_are_followed_to_the_end() {
+        let wants = |set: &[NodeState]| {
+            let next = set.iter().position(|state| !state.is_active());
+            (0..set.len()).map(|at| if Some(at) == next { Slip } else { set[at] }).collect()
+        };
+        assert_eq!(settled(100, wants), Some((vec![Slip; 100], 100)));
+    }
+
+    #[test]
+    fn open_and_closed_nodes_that_run_in_circles_come_to_the_set_that_fulfils_all_conditions() {
+        // Conditions of w = q + M z: of each set the violated ones, for q = (−1 −3 2), M = (1 1 −2; 0 1 −2; 2 0 1).
+        let violated = |set: &[NodeState]| match set {
+            [Inactive, Inactive, Inactive] => vec![0, 1],
+            [Slip, Inactive, Inactive] => vec![1],
+            [Inactive, Slip, Inactive] => vec![],
+            [Slip, Slip, Inactive] => vec![0, 2],
+            [Inactive, Inactive, Slip] => vec![2],
+            [Slip, Inactive, Slip] => vec![0, 1, 2],
+            [Inactive, Slip, Slip] => vec![1, 2],
+            _ => vec![0],
+        };
+        let wants = |set: &[NodeState]| {
+            let violated = violated(set);
+            (0..3).map(|at| if violated.contains(&at) { exchanged(set[at]) } else { set[at] }).collect()
+        };
+        assert_eq!(settled(3, wants).map(|(set, _)| set), Some(vec![Inactive, Slip, Inactive]));
     }
 
     #[test]

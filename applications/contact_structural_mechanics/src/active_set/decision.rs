@@ -70,6 +70,11 @@ impl<'a> Rules<'a> {
         (decisions, before)
     }
 
+    /// Whether open and closed slave nodes can be decided on together: without friction they have one condition each.
+    pub(super) fn decides_jointly(self) -> bool {
+        self.formulation.multiplier.is_unknown() && !self.formulation.frictional()
+    }
+
     /// Why a converged state is not accepted: slave nodes penetrate the master without being in contact, by more than
     /// [`ALLOWED`] of the largest pressure.
     pub(crate) fn passed_through(self, part: &ModelPart, states: &SlaveStates) -> Option<String> {
@@ -170,7 +175,7 @@ impl<'a> Rules<'a> {
     ///
     /// The penalty method states tractions ε WG, those of all others are multipliers. By Uzawa's iteration p° + ε g decides: p° is
     /// kept until the next update, also of a node that is not in contact meanwhile.
-    fn numbers(self, part: &ModelPart, states: &SlaveStates, slave: SlaveIndex) -> SlaveNumbers {
+    pub(super) fn numbers(self, part: &ModelPart, states: &SlaveStates, slave: SlaveIndex) -> SlaveNumbers {
         let Self { formulation, parameters, resolution } = self;
         let (state, owner) = (&states[slave], states.owner(slave));
         let (normal, area, penalty, held) =

@@ -7,6 +7,7 @@ mod cycling;
 mod decision;
 pub(crate) mod forced_points;
 mod holding;
+mod joint_decision;
 mod measured_resolution;
 mod set_stage;
 mod sliding;

@@ -4,16 +4,20 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::{Outer, SetChange};
+use zelus_core::entities::{ComplementaryCondition, Outer, Responses, SetChange};
 use zelus_core::model::ModelPart;
 
 use super::cycling::{CycleGuard, SetOutcome};
 use super::decision::Rules;
 use super::forced_points;
+use super::joint_decision;
 use super::sliding::find_tangents;
 use crate::interface::SlaveIndex;
 use crate::settings::Setup;
 use crate::slave_nodes::SlaveStates;
+
+/// Joint decisions of a step at most: in motions that are not small each is a linear step towards the set.
+const MOST_JOINT: usize = 10;
 
 /// History of the active set within a step.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -25,6 +29,16 @@ pub(crate) struct SetStage {
     /// How often nodes that always slide have turned back.
     #[serde(skip)]
     reversals: BTreeMap<SlaveIndex, usize>,
+    /// Joint decisions of the step.
+    #[serde(skip)]
+    joint: JointDecisions,
+}
+
+/// Joint decisions of a step: how many, and whether there are no more.
+#[derive(Debug, Clone, Copy, Default)]
+struct JointDecisions {
+    made: usize,
+    ended: bool,
 }
 
 impl SetStage {
@@ -33,6 +47,7 @@ impl SetStage {
         self.forget_sets();
         self.released.clear();
         self.reversals.clear();
+        self.joint = JointDecisions::default();
     }
 
     /// The equations are others from now on: sets that come back are no cycle.
@@ -74,6 +89,10 @@ impl SetStage {
         }
         let rules = Rules::of(setup);
         let (mut decisions, before) = rules.decide(part, states, &mut self.released);
+        let changes = decisions.iter().zip(&before).any(|((_, decision), was)| decision.state != *was);
+        if changes && !self.joint.ended && self.joint.made < MOST_JOINT && rules.decides_jointly() {
+            return Outer::Together;
+        }
         let largest = decisions.iter().map(|(_, decision)| -decision.pressure).fold(0.0, f64::max);
         let settled = self.cycles.settle(&mut decisions, &before, largest, &ids(part, states));
         match settled {
@@ -85,6 +104,44 @@ impl SetStage {
                 Outer::Again
             }
         }
+    }
+
+    /// The slave nodes that are decided on together.
+    pub(crate) fn decided_together(states: &SlaveStates) -> Vec<SlaveIndex> {
+        joint_decision::slave_nodes(states)
+    }
+
+    /// Their conditions.
+    pub(crate) fn conditions(part: &ModelPart, states: &SlaveStates, setup: &Setup) -> Vec<ComplementaryCondition> {
+        let multiplier = setup.settings.formulation.multiplier;
+        joint_decision::conditions(part, states, multiplier, &Self::decided_together(states))
+    }
+
+    /// Decides on slave nodes together in a converged state, where their `responses` are known and lead to another set, and says so;
+    /// otherwise they are decided on one by one from here on.
+    pub(crate) fn decide_together(
+        &mut self,
+        part: &mut ModelPart,
+        states: &mut SlaveStates,
+        setup: &Setup,
+        responses: Option<&Responses>,
+    ) -> Option<String> {
+        self.joint.ended = true;
+        let rules = Rules::of(setup);
+        let (mut decisions, before) = rules.decide(part, states, &mut self.released);
+        let slaves = Self::decided_together(states);
+        if !joint_decision::decide(rules, part, states, &slaves, responses?, &mut decisions) {
+            return None;
+        }
+        let change = rules.apply(part, states, &decisions, &before).count();
+        if change == 0 {
+            return None;
+        }
+        self.joint = JointDecisions { made: self.joint.made + 1, ended: false };
+        let count = slaves.len();
+        Some(format!(
+            "the states of {count} slave nodes are decided together, as one complementarity problem; {change} change"
+        ))
     }
 
     /// Finds the directions of sliding, where nodes have them.

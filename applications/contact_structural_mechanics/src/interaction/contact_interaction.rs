@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
-    ActiveSet, Coupling, EntityBlock, FirstIterate, Interaction, Join, Massless, MasslessNodes, Outer, PairState,
-    Retry, SetChange,
+    ActiveSet, Complementary, ComplementaryCondition, Coupling, EntityBlock, FirstIterate, Interaction, Join, Massless,
+    MasslessNodes, Outer, PairState, Responses, Retry, SetChange,
 };
 use zelus_core::model::{Carriers, ModelPart};
 use zelus_core::{Carrier, Result, State};
@@ -418,6 +418,10 @@ impl ActiveSet for ContactInteraction {
         Ok(outer)
     }
 
+    fn complementary(&mut self) -> Option<&mut dyn Complementary> {
+        Some(self)
+    }
+
     fn restrain_free_bodies(&mut self, part: &mut ModelPart) -> bool {
         if !self.acting || self.contact.setup.settings.explicit.is_some() {
             return false;
@@ -435,6 +439,38 @@ impl ActiveSet for ContactInteraction {
         }
         self.contact.publish(part);
         any
+    }
+}
+
+impl Complementary for ContactInteraction {
+    fn conditions(&self, part: &ModelPart) -> Vec<ComplementaryCondition> {
+        SetStage::conditions(part, &self.contact.states, &self.contact.setup)
+    }
+
+    fn let_all_act(&mut self) {
+        let mut all = self.contact.states.clone();
+        for slave in SetStage::decided_together(&all) {
+            (all[slave].law.active, all[slave].law.slides) = (true, Some(true));
+        }
+        self.contact.pairing.set_states(&all);
+    }
+
+    fn let_decided_act(&mut self) {
+        self.contact.pairing.set_states(&self.contact.states);
+    }
+
+    fn decide_together(
+        &mut self,
+        part: &mut ModelPart,
+        responses: Option<&Responses>,
+    ) -> Result<(Outer, Option<String>)> {
+        let (states, setup) = (&mut self.contact.states, &self.contact.setup);
+        let said = self.set.decide_together(part, states, setup, responses);
+        if said.is_none() {
+            return Ok((self.after_convergence(part)?, None));
+        }
+        self.contact.publish(part);
+        Ok((Outer::Again, said))
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::super::bodies::tell_what_holds;
 use super::super::body_loads::{warn_of_body_loads, warn_of_no_inertia};
-use super::super::no_load::warn_of_no_load;
 use super::super::coincident_nodes::warn_of_coincident_nodes;
+use super::super::no_load::warn_of_no_load;
 use super::super::solver::TimeScheme;
 use super::super::soundness::{
     prescriptions, warn_of_collapsed, warn_of_contradictions, warn_of_loads_given_twice, warn_of_twins,

@@ -108,6 +108,12 @@ impl Assembler {
         rhs.iter_mut().zip(product).for_each(|(sum, value)| *sum += value);
     }
 
+    /// Entries of the interactions' tangent in the row of an unknown, with the unknowns they belong to.
+    pub fn coupling_row(&self, number: u32) -> impl Iterator<Item = (u32, f64)> + '_ {
+        let (columns, values) = self.coupling.matrix().row(number as usize);
+        columns.iter().copied().zip(values.iter().copied())
+    }
+
     /// Forces of inertia and damping over all unknowns, M a + C v less the forces carried over; collective.
     ///
     /// # Errors

@@ -445,10 +445,17 @@ impl NewtonRaphson {
     ) -> Result<Turn> {
         let mut accepted = true;
         let start = Instant::now();
-        for set in system.interactions.iter_mut().filter_map(|i| i.active_set()) {
+        for at in 0..system.interactions.len() {
+            let Some(set) = system.interactions[at].active_set() else { continue };
             set.look_at(part, &system.elements);
-            match set.after_convergence(part)? {
-                Outer::Done => {}
+            let mut outer = set.after_convergence(part)?;
+            if outer == Outer::Together {
+                let said;
+                (outer, said) = self.decide_together(at, part, system)?;
+                said.iter().for_each(|said| monitor.note(&format!("step {}: {said}", part.info.step)));
+            }
+            match outer {
+                Outer::Done | Outer::Together => {}
                 Outer::Again => accepted = false,
                 Outer::Widened(why) => {
                     monitor.note(&format!("step {}: {why}; the iteration continues with them", part.info.step));

@@ -1,0 +1,53 @@
+//! Conditions of an interaction that are decided together, by one linear complementarity problem.
+
+use super::interaction::Outer;
+use crate::diagnostics::Result;
+use crate::model::{ModelPart, Owner, ScalarVariable};
+
+/// One condition: its multiplier and the row of that multiplier's equation, one of which is zero.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComplementaryCondition {
+    /// Owner of the multiplier.
+    pub owner: Owner,
+    /// The unknowns of the multiplier, each with its share of the direction in which the condition acts.
+    pub direction: Vec<(ScalarVariable, f64)>,
+    /// Whether it acts: its row is zero and its multiplier follows, otherwise the reverse.
+    pub acts: bool,
+}
+
+/// Linear responses of conditions, about a state in balance, to what is given of each: the row of one that acts, the multiplier of
+/// another.
+///
+/// Column j is the change by a unit force on row j where condition j acts, and by a unit multiplier j where it does not.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Responses {
+    /// Residual of each row in the state, as if all conditions acted.
+    pub rows: Vec<f64>,
+    /// Change of multiplier i by what is given of condition j, at `i * n + j`.
+    pub of_multipliers: Vec<f64>,
+    /// Change of the residual of row i, as if all conditions acted, by what is given of condition j, at `i * n + j`.
+    pub of_rows: Vec<f64>,
+}
+
+/// Conditions that are decided together.
+pub trait Complementary {
+    /// The conditions to decide on.
+    fn conditions(&self, part: &ModelPart) -> Vec<ComplementaryCondition>;
+
+    /// Lets all conditions act, whatever has been decided on them.
+    fn let_all_act(&mut self);
+
+    /// Lets those conditions act that did before [`Complementary::let_all_act`].
+    fn let_decided_act(&mut self);
+
+    /// Decides on all conditions by their responses, without them one by one; gives a line for the log too, where they are decided
+    /// together.
+    ///
+    /// # Errors
+    /// A geometry that cannot be computed with.
+    fn decide_together(
+        &mut self,
+        part: &mut ModelPart,
+        responses: Option<&Responses>,
+    ) -> Result<(Outer, Option<String>)>;
+}
