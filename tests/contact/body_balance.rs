@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::blocks::{Deck, Joint, Mesh};
-use crate::support::{read_json, said, zelus};
+use crate::support::{read_json, root, said, scratch_copy, zelus};
 
 /// Stiffness of the punch in that of the pad.
 const STIFFER: f64 = 210e3;
@@ -80,8 +80,27 @@ fn a_soft_pad_under_a_stiff_punch_is_in_balance() {
 }
 
 #[test]
+fn a_nonlinear_model_in_a_linear_analysis_is_iterated_until_it_is_in_balance() {
+    let run = |analysis: &str| {
+        let scratch = scratch_copy(&root().join("tests/cases/structural/mixture_of_layers_total"));
+        let path = scratch.path().join("ProjectParameters.json");
+        let mut deck = read_json(&path).expect("the deck");
+        deck["solver_settings"]["analysis_type"] = json!(analysis);
+        std::fs::write(&path, deck.to_string()).expect("a file");
+        let output = zelus(scratch.path(), &["run", "ProjectParameters.json", "--report", "report.json"]);
+        assert!(output.status.success(), "{}", said(&output));
+        let report = read_json(&scratch.path().join("report.json")).expect("the report");
+        let last = report["steps"].as_array().expect("steps").last().expect("a step").clone();
+        (last["balance"]["energies"]["stored"].as_f64().expect("a number"), said(&output))
+    };
+    let ((linear, told), (nonlinear, silent)) = (run("linear"), run("non_linear"));
+    assert!(told.contains("linear-analysis") && !silent.contains("linear-analysis"), "{told} {silent}");
+    assert!((linear - nonlinear).abs() < 1e-6 * nonlinear.abs(), "{linear} {nonlinear}");
+}
+
+#[test]
 fn a_state_that_only_the_criterion_accepts_is_told() {
     let (report, messages) = press(|deck| deck["solver_settings"]["check_body_balance"] = json!(false));
-    assert!(messages.contains("warning[out-of-balance]") && messages.contains("part Lower"), "{messages}");
+    assert!(messages.contains("out-of-balance") && messages.contains("part Lower"), "{messages}");
     assert!(out_of_balance(&report) > 0.05, "the deck would need no check");
 }

@@ -456,6 +456,15 @@ impl NewtonRaphson {
         Ok(())
     }
 
+    /// Warns, once a run, that one solve does not balance a model whose analysis is to be linear.
+    fn warn_of_nonlinearity(&mut self, imbalance: &Imbalance) {
+        if !std::mem::replace(&mut self.warned_of_balance, true) {
+            let fact = format!("\"analysis_type\" is \"linear\", but after one solve {}", imbalance.fact());
+            let remedy = "the model is nonlinear, and is iterated on; set \"analysis_type\" to \"non_linear\"";
+            self.messages.push(Diagnostic::warning("linear-analysis", fact).remedy(remedy));
+        }
+    }
+
     /// Warns, once a run, of redundant constraints of interactions.
     pub(super) fn warn_of_redundancy(&mut self, why: &str) {
         if std::mem::replace(&mut self.warned, true) {

@@ -100,11 +100,9 @@ impl NewtonRaphson {
                 Turn::Converged => {
                     self.keep_reactions(part, system, &step.residual);
                     step.imbalance = self.keep_balance(part, system, &step.residual, &step.references, None)?;
-                    if step.imbalance.is_none() {
-                        return Ok((step.records, None));
-                    }
-                    // One solve does not balance what is nonlinear.
+                    let Some(imbalance) = &step.imbalance else { return Ok((step.records, None)) };
                     if self.settings.linear {
+                        self.warn_of_nonlinearity(imbalance);
                         step.last = self.settings.max_iteration;
                     }
                 }
