@@ -7,7 +7,7 @@ use crate::support::{read_json, root, said, scratch_copy, zelus};
 
 const CODE: &str = "coincident-nodes";
 
-/// What `zelus check` says of a strip of two quadrilaterals, whose lips along x = 1 are two pairs of nodes, with these lines after the
+/// Messages of `zelus check` on a strip of two quadrilaterals, whose lips along x = 1 are two pairs of nodes, with these lines after the
 /// elements and processes of contact.
 fn strip(more: &str, contact: serde_json::Value) -> String {
     let scratch = scratch_copy(&root().join("tests/cases/structural/bar_thickness"));

@@ -153,7 +153,7 @@ fn a_step_that_does_not_converge_ends_the_run_with_what_was_accepted_before_it()
     assert!(results.step(Some(2.0)).is_err(), "a step that did not converge was written");
     let text = said(&output);
     for word in
-        ["step ", "in 1 iterations", "largest residual", "of node", "Try a shorter \"time_step\"", "results up to time"]
+        ["step ", "in 1 iteration", "largest residual", "of node", "Try a shorter \"time_step\"", "results up to time"]
     {
         assert!(text.contains(word), "the message does not say {word:?}:\n{text}");
     }

@@ -132,3 +132,24 @@ fn contact_of_bodies_of_revolution_counts_the_way_round() {
     let pressure = report["largest"]["CONTACT_PRESSURE"].as_f64().unwrap();
     assert!((pressure / 10.0 - 1.0).abs() < 0.03, "{pressure}");
 }
+
+/// A starter deck of a material that hardly changes its volume has elements that do not lock.
+#[test]
+fn starter_decks_do_not_lock() {
+    const MIXED: &str = "SmallDisplacementMixedVolumetricStrainElement2D4N";
+    for (ratio, mixed) in [(0.4999, true), (0.3, false)] {
+        let scratch = tempfile::tempdir().unwrap();
+        let block = format!(
+            "*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n*ELEMENT,TYPE=CPE4,ELSET=BLOCK\n1,1,2,3,4\n*NSET,NSET=BOTTOM\n1,2\n\
+             *MATERIAL,NAME=M\n*ELASTIC\n1000,{ratio}\n*SOLID SECTION,ELSET=BLOCK,MATERIAL=M\n*SURFACE,NAME=TOP\nBLOCK,S3\n\
+             *STEP\n*STATIC\n*BOUNDARY\nBOTTOM,1,2\n*DSLOAD\nTOP,P,10\n*END STEP\n"
+        );
+        std::fs::write(scratch.path().join("block.inp"), block).unwrap();
+        let output = zelus(scratch.path(), &["new", "--from", "block.inp", "-o", "deck"]);
+        assert!(output.status.success(), "{}", said(&output));
+        let mesh = std::fs::read_to_string(scratch.path().join("deck/block.mdpa")).unwrap();
+        assert_eq!((mesh.contains(MIXED), said(&output).contains("locks")), (mixed, mixed), "{}", said(&output));
+        let output = zelus(scratch.path(), &["run", "deck/ProjectParameters.json"]);
+        assert!(output.status.success() && !said(&output).contains("[locking]"), "{}", said(&output));
+    }
+}

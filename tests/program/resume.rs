@@ -259,7 +259,7 @@ fn a_run_saves_itself_now_and_then() {
     child.wait().expect("an end");
     assert!(saved(folder.path()), "it was saved");
     let output = zelus(folder.path(), &["run", DECK, "--resume"]);
-    assert!(output.status.success() && said(&output).contains("goes on from"), "{}", said(&output));
+    assert!(output.status.success() && said(&output).contains("restart from"), "{}", said(&output));
     let whole = motion(0.0);
     assert!(zelus(whole.path(), &["run", DECK]).status.success());
     assert_same("autosave", whole.path(), folder.path());

@@ -56,7 +56,7 @@ impl LargeMotion {
         let is_here = is_largest(part, ratio) && ratio > MOST;
         if let Some((_, place)) = self.displacement.as_ref().filter(|_| is_here) {
             let fact = format!("the displacement {length:.3e} {place} is {ratio:.3e} times the size of the model");
-            let remedy = "check the units of YOUNG_MODULUS, loads and lengths, and the supports";
+            let remedy = "check the units of materials, loads and lengths, and the supports";
             out.push(Diagnostic::warning("large-motion", fact).remedy(remedy));
         }
         let ratio = self.small.as_ref().map_or(0.0, |(number, _)| number.ratio());
