@@ -132,8 +132,9 @@ impl CycleGuard {
         if !comes_back && self.converged.len() < MOST_CHANGES {
             return SetOutcome::Change;
         }
-        // One node that alternates alone has no state at all.
-        let is_endless = comes_back && changing.len() == 1;
+        // One node that leaves the state it has just taken, alone, has no state at all.
+        let before_last = self.converged.iter().rev().nth(1);
+        let is_endless = changing.len() == 1 && before_last.is_some_and(|(set, _)| *set == wanted);
         let opens = |&at: &usize| decisions[at].1.state.is_active() != before[at].is_active();
         if !is_endless && changing.iter().all(opens) && self.exchange(&changing, before, &wanted, decisions) {
             return SetOutcome::Change;
