@@ -65,7 +65,7 @@ pub(super) fn decide(
         if of_multiplier { -responses.of_multipliers[at] } else { responses.of_rows[at] }
     };
     let given: Vec<f64> = (0..n).map(|j| change(j * n + j, !is_active(j))).collect();
-    if given.iter().any(|given| *given == 0.0) {
+    if given.contains(&0.0) {
         return false;
     }
     let m = (0..n * n).map(|at| change(at, is_active(at / n)) / given[at % n]).collect();
