@@ -82,7 +82,7 @@ fn a_soft_pad_under_a_stiff_punch_is_in_balance() {
 #[test]
 fn a_nonlinear_model_in_a_linear_analysis_is_iterated_until_it_is_in_balance() {
     let run = |analysis: &str| {
-        let scratch = scratch_copy(&root().join("tests/cases/structural/mixture_of_layers_total"));
+        let scratch = scratch_copy(&root().join("tests/cases/structural/cooks_membrane_mixed"));
         let path = scratch.path().join("ProjectParameters.json");
         let mut deck = read_json(&path).expect("the deck");
         deck["solver_settings"]["analysis_type"] = json!(analysis);

@@ -187,7 +187,7 @@ fn through_the_gap(bars: &Bars, laws: &Value) -> [f64; 2] {
     let scratch = tempfile::tempdir().expect("a scratch folder");
     bars.write(scratch.path(), &deck);
     for conductivity in CONDUCTIVITIES {
-        let [own, none] = [conductivity, 1e9].map(|number| format!("\"CONDUCTIVITY\":{number:?}"));
+        let [own, none] = [conductivity, 1e7].map(|number| format!("\"CONDUCTIVITY\":{number:?}"));
         change(scratch.path(), "heat.json", &own, &none);
     }
     let output = zelus(scratch.path(), &["run", "ProjectParameters.json"]);

@@ -452,7 +452,7 @@ impl SolverSettings {
             compute_reactions: self.settings.get_bool("compute_reactions")?,
             reactions_of_constraints: self.settings.get_bool("reactions_of_constraints")?,
             move_mesh: self.settings.get_bool("move_mesh_flag")?,
-            requires_balance: self.settings.node().get("check_body_balance").map_or(Ok(true), Node::bool)?,
+            requires_balance: self.settings.node().get("check_body_balance").map(Node::bool).transpose()?,
             line_search: None,
             line_search_after_failure: search_after_failure.then(|| LineSearch::new(&empty)).transpose()?,
         };

@@ -250,7 +250,7 @@ impl Run {
             compute_reactions: true,
             reactions_of_constraints: true,
             move_mesh: true,
-            requires_balance: true,
+            requires_balance: None,
             line_search: None,
             line_search_after_failure: None,
         };

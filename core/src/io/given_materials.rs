@@ -3,7 +3,8 @@
 use crate::diagnostics::Diagnostic;
 use crate::model::{ModelPart, Properties};
 
-/// The entries of a materials file by element; a later entry replaces an earlier one only where its part lies in that of the earlier.
+/// The entries of a materials file by element; a later entry replaces an earlier one only where its part lies in that of the earlier,
+/// by its path or with all of its elements.
 pub(super) struct GivenMaterials {
     /// Entry of each element: its place among the entries, and the id of its properties.
     of_element: Vec<Option<(usize, usize)>>,
@@ -25,10 +26,14 @@ impl GivenMaterials {
         id: usize,
         part: &ModelPart,
     ) -> Option<Diagnostic> {
+        let entry_of = |element: &u32| self.of_element[*element as usize].map(|(entry, _)| entry);
+        let around =
+            elements.first().and_then(entry_of).filter(|of| elements.iter().all(|at| entry_of(at) == Some(*of)));
         let mut contradictions: Vec<(u32, usize)> = Vec::new();
         for &element in elements {
             let before = self.of_element[element as usize].replace((earlier.len(), id));
-            let other = before.filter(|&(entry, _)| !is_part_of(name, &earlier[entry]));
+            let lies_in = |entry: usize| around == Some(entry) || is_part_of(name, &earlier[entry]);
+            let other = before.filter(|&(entry, _)| !lies_in(entry));
             let differs = |&(_, other): &(usize, usize)| match (part.properties.get(&other), part.properties.get(&id)) {
                 (Some(one), Some(two)) => !is_same_material(one, two),
                 _ => true,

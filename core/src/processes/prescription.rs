@@ -1,7 +1,7 @@
 //! Prescribed unknowns and loads of a process, asked for before anything runs.
 
 use crate::diagnostics::Place;
-use crate::entities::ConditionEntry;
+use crate::entities::{ConditionEntry, ElementEntry};
 use crate::model::ScalarVariable;
 use crate::parameters::Interval;
 use crate::registry;
@@ -51,6 +51,11 @@ pub struct Load {
 pub(super) fn is_load(name: &str) -> bool {
     let kinds = registry::all::<ConditionEntry>();
     kinds.iter().any(|kind| kind.loads.is_some_and(|loads| loads.contains(&name)))
+}
+
+/// Whether elements of any kind are loaded by that variable of their nodes.
+pub(super) fn is_body_load(name: &str) -> bool {
+    registry::all::<ElementEntry>().iter().any(|kind| kind.body_load.is_some_and(|(variable, _)| variable == name))
 }
 
 /// Components that meet a condition, and all of them.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::prescription::{Load, LoadCarrier, is_load};
+use super::prescription::{Load, LoadCarrier, is_body_load, is_load};
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place, Report, Result, did_you_mean};
 use crate::model::{
@@ -60,7 +60,8 @@ impl Target {
         variables: impl Iterator<Item = ScalarVariable>,
         on: LoadCarrier,
     ) -> Option<Load> {
-        let variables: Vec<ScalarVariable> = variables.filter(|variable| is_load(variable.column)).collect();
+        let variables: Vec<ScalarVariable> =
+            variables.filter(|variable| is_load(variable.column) || is_body_load(variable.column)).collect();
         let is_here = self.path.split('.').next() == Some(part.tree.name.as_str());
         let selection = self.selection(&part.tree).ok().filter(|_| is_here && !variables.is_empty())?;
         let members = match on {

@@ -61,8 +61,9 @@ pub struct NewtonSettings {
     pub reactions_of_constraints: bool,
     /// Whether nodes follow the unknown that moves the mesh.
     pub move_mesh: bool,
-    /// Whether an iteration goes on until the forces on each body are in balance; else the run is warned of those that are not.
-    pub requires_balance: bool,
+    /// Whether an iteration goes on until the forces on each body are in balance, or else the run is warned of forces that are not;
+    /// `None` leaves it to the criterion.
+    pub requires_balance: Option<bool>,
     /// How much of an increment is taken; all of it when `None`.
     pub line_search: Option<LineSearch>,
     /// The same for steps that have failed, where they may be tried again so.
@@ -290,10 +291,11 @@ impl NewtonRaphson {
         let inertia = self.scheme.inertia(part, &system.dofs);
         let balance = self.account.balance(part, system, &mut self.assembler, residual, inertia.as_ref(), more)?;
         self.balance = Some(balance);
-        let imbalance = self.imbalance(part, system, residual, references);
+        let required = self.settings.requires_balance;
+        let imbalance = if required.is_some() { self.imbalance(part, system, residual, references) } else { None };
         self.phases.since("balance", start);
         match imbalance {
-            Some(imbalance) if self.settings.requires_balance => {
+            Some(imbalance) if required == Some(true) => {
                 self.balance = None;
                 Ok(Some(imbalance))
             }

@@ -338,7 +338,8 @@ impl NewtonRaphson {
             {
                 let first = why.lines().next().unwrap_or_default();
                 let limit = "at a limit load prescribe displacements, or use \"arc_length\"";
-                Ok(Turn::Failed(format!("iteration {iteration}: {first}; {limit}")))
+                let worst = self.largest_residual(part, system, &self.assembler.equations().balanced(residual));
+                Ok(Turn::Failed(format!("iteration {iteration}: {first}{}; {limit}", worst.unwrap_or_default())))
             }
             failed => Err(failed.into()),
         }
