@@ -103,11 +103,11 @@ fn a_signal_stops_after_the_step_and_says_how_to_go_on() {
     assert!(zelus(whole.path(), &["run", DECK]).status.success());
     for (signal, name) in [("-INT", "SIGINT"), ("-TERM", "SIGTERM")] {
         let mut stopped = false;
-        // A run may come to its end before the signal does.
-        for _ in 0..20 {
+        // A signal may come before the run listens to it, or after its end.
+        for attempt in 0..20 {
             let folder = motion();
             let child = start(folder.path(), &["run", DECK, "--report", "report.json"]);
-            std::thread::sleep(Duration::from_millis(60));
+            std::thread::sleep(Duration::from_millis(60 + 20 * attempt));
             let id = child.id().to_string();
             Command::new("kill").args([signal, &id]).status().expect("kill");
             let output = child.wait_with_output().expect("an end");
