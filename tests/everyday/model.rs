@@ -170,6 +170,11 @@ impl Model {
         }
     }
 
+    /// The largest Young's modulus of the bodies.
+    pub fn largest_young(&self) -> f64 {
+        self.bodies.iter().map(|(_, _, [young, _])| *young).fold(0.0, f64::max)
+    }
+
     /// A body of quadrilaterals or hexahedra, or of simplices, mapped from the unit square or cube; sides that meet are joined.
     pub fn body(&mut self, divisions: &[usize], young: f64, poisson: f64, map: impl Fn(Vec3) -> Vec3) -> Body {
         let corners = if self.simplices { self.dim + 1 } else { 1 << self.dim };

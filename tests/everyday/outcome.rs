@@ -9,7 +9,7 @@ use crate::support::{Results, read_json};
 
 /// Largest error of balance, as a share of the largest reaction: that of the default tolerance of residuals.
 const BALANCE: f64 = 2e-3;
-/// Share of contact forces that is round-off.
+/// Share of the forces that strain bodies, Young's modulus times displacement, that is round-off.
 const ROUND_OFF: f64 = 1e-9;
 /// Forces that count in every state, as a share of the largest of the run.
 const LEAST_FORCE: f64 = 1e-2;
@@ -148,12 +148,12 @@ impl State {
         slaves(model).into_iter().filter(|&n| norm(self.multiplier[n]) > 0.0).collect()
     }
 
-    /// Sum of the sizes of all reactions, or the load where that is more; at least the round-off of contact forces, where supports
-    /// carry nothing.
+    /// Sum of the sizes of all reactions, or the load where that is more; at least the round-off of forces that strain the bodies,
+    /// where supports carry nothing.
     fn forces(&self, model: &Model, load: Vec3) -> f64 {
         let supports: BTreeSet<usize> = model.supported.iter().copied().collect();
-        let pressed = slaves(model).into_iter().map(|n| norm(self.multiplier[n]) * self.area[n]).sum::<f64>();
-        supports.into_iter().map(|n| norm(self.reaction[n])).sum::<f64>().max(norm(load)).max(ROUND_OFF * pressed)
+        let strained = model.largest_young() * self.displacement.iter().map(|u| norm(*u)).fold(0.0, f64::max);
+        supports.into_iter().map(|n| norm(self.reaction[n])).sum::<f64>().max(norm(load)).max(ROUND_OFF * strained)
     }
 
     /// `largest` is the largest [`State::forces`] of the run.
