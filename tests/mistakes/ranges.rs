@@ -43,8 +43,7 @@ fn gaps_of_an_adapted_penalty_in_the_other_order_are_refused() {
         let (found, said) = told(PRESSED, DECK, &["check", DECK], &|deck| {
             deck["solver_settings"]["contact_settings"]["mortar_type"] = json!("PenaltyContactFrictionless");
             deck["processes"]["contact_process_list"][0]["python_module"] = json!("penalty_contact_process");
-            contact(deck)["advance_ALM_parameters"] =
-                json!({"adapt_penalty": adapts, "min_gap_factor": 1e-2, "max_gap_factor": 1e-3});
+            contact(deck)["advance_ALM_parameters"] = json!({"adapt_penalty": adapts, "adaptation_rule": "APM", "min_gap_factor": 1e-2, "max_gap_factor": 1e-3});
         });
         assert_eq!(found, code, "{said}");
         assert_eq!(said.contains("error[out-of-range]") && said.contains("min_gap_factor"), adapts, "{said}");

@@ -339,6 +339,10 @@ fn check_gaps_of_adaptation(settings: &Settings, keys: &PenaltyKeys) -> Result<(
     let Some(least) = keys.min_gap_factor.filter(|least| keys.adapt_penalty && *least >= keys.max_gap_factor) else {
         return Ok(());
     };
+    // Other rules know no lower bound.
+    if settings.get_str("advance_ALM_parameters.adaptation_rule")? != "APM" {
+        return Ok(());
+    }
     let key = "advance_ALM_parameters.min_gap_factor";
     let fact = format!("\"min_gap_factor\" is {least}, \"max_gap_factor\" {}", keys.max_gap_factor);
     let remedy = "write a \"min_gap_factor\" below \"max_gap_factor\": the penalty falls below the one, and grows above the other";
