@@ -3,7 +3,7 @@
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, norm, scale, sub};
 
-use super::direct_check::{distance_along, meets};
+use super::direct_check::met_along;
 use super::tree::{Bounds, Tree};
 use crate::interface::{Facet, Interface};
 
@@ -20,17 +20,10 @@ pub(super) fn farthest_master(
     let first = |x: [f64; 3]| {
         let far = norm(sub(extent.high, extent.low)) + norm(sub(centre, extent.low));
         let line = Bounds::of(&[x, add(x, scale(normal, far))]);
-        let met = tree.meeting(&line).into_iter().filter_map(|at| {
-            let master = &interface.facets[masters[at as usize] as usize];
-            let points = master.positions(part);
-            let of_master = master.normal_at(&points);
-            if norm(sub(normal, of_master)) < threshold {
-                return None;
-            }
-            let distance = distance_along(master, &points, of_master, x, normal).filter(|distance| *distance >= 0.0)?;
-            meets(&points, master, x, normal, distance).then_some(distance)
-        });
-        met.min_by(f64::total_cmp)
+        let master = |at: u32| &interface.facets[masters[at as usize] as usize];
+        let faces = |_: &Facet, of_master| norm(sub(normal, of_master)) >= threshold;
+        let met = met_along(part, (tree, master), &line, (x, normal), faces).map(|(distance, _)| distance);
+        met.filter(|distance| *distance >= 0.0).min_by(f64::total_cmp)
     };
     let points = facet.positions(part);
     let points = points.iter().copied().chain([centre]);

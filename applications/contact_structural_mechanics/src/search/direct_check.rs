@@ -5,6 +5,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, scale, sub};
 use zelus_structural_mechanics::variables::NORMAL;
 
+use super::tree::{Bounds, Tree};
 use crate::interface::Facet;
 use crate::variables::NODAL_H;
 
@@ -35,7 +36,7 @@ pub fn touching_nodes(part: &ModelPart, slave: &Facet, master: &Facet, factor: f
 
 /// Way from `x` along `direction` to the plane with this normal through the facet at `points`, of a facet of second order to
 /// itself; `None` where it is parallel.
-pub(super) fn distance_along(
+fn distance_along(
     facet: &Facet,
     points: &[[f64; 3]],
     normal: [f64; 3],
@@ -58,8 +59,29 @@ pub(super) fn distance_along(
     Some(distance)
 }
 
+/// The masters whose boxes meet `line` and that a line from `x` along the unit vector `direction` meets, with the way to each
+/// (length); `faces` says of a master, by its unit normal, whether it counts.
+pub(super) fn met_along<'a>(
+    part: &ModelPart,
+    (tree, master): (&Tree, impl Fn(u32) -> &'a Facet),
+    line: &Bounds,
+    (x, direction): ([f64; 3], [f64; 3]),
+    faces: impl Fn(&Facet, [f64; 3]) -> bool,
+) -> impl Iterator<Item = (f64, &'a Facet)> {
+    tree.meeting(line).into_iter().filter_map(move |at| {
+        let facet = master(at);
+        let points = facet.positions(part);
+        let normal = facet.normal_at(&points);
+        if !faces(facet, normal) {
+            return None;
+        }
+        let distance = distance_along(facet, &points, normal, x, direction)?;
+        meets(&points, facet, x, direction, distance).then_some((distance, facet))
+    })
+}
+
 /// Whether the foot at that distance lies on the facet at `points`.
-pub(super) fn meets(points: &[[f64; 3]], facet: &Facet, x: [f64; 3], direction: [f64; 3], distance: f64) -> bool {
+fn meets(points: &[[f64; 3]], facet: &Facet, x: [f64; 3], direction: [f64; 3], distance: f64) -> bool {
     let foot = std::array::from_fn(|c| x[c] + distance * direction[c]);
     local_coordinates(facet.shape, points, foot).is_some_and(|at| facet.shape.cell().contains(at.xi, EDGE))
 }

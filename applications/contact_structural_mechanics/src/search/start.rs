@@ -6,7 +6,7 @@ use zelus_core::parallel;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
 
 use super::candidates::AT_A_TIME;
-use super::direct_check::{distance_along, meets};
+use super::direct_check::met_along;
 use super::inside::inside;
 use super::tree::{Bounds, Tree};
 use crate::interface::{Facet, Interface, Roles, find_nodal_h};
@@ -179,20 +179,13 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<StartingNode> {
         let (x, size) = (part.nodes.current[node as usize], sizes[node as usize]);
         let way = |reach: f64| {
             let line = Bounds::of(&[add(x, scale(normal, -reach)), add(x, scale(normal, reach))]);
-            let met = tree.meeting(&line.grown(ROUND_OFF * extent)).into_iter().filter_map(|master| {
-                let facet = masters[master as usize];
-                let points = facet.positions(part);
-                let of_facet = facet.normal_at(&points);
-                if dot(of_facet, normal) >= -FACING || facet.nodes.contains(&node) {
-                    return None;
-                }
-                let distance = distance_along(facet, &points, of_facet, x, normal)?;
-                meets(&points, facet, x, normal, distance).then_some((distance, facet.nodes[0]))
-            });
+            let line = line.grown(ROUND_OFF * extent);
+            let faces = |facet: &Facet, of_facet| dot(of_facet, normal) < -FACING && !facet.nodes.contains(&node);
+            let met = met_along(part, (&tree, |at| masters[at as usize]), &line, (x, normal), faces);
             met.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
         };
         let (distance, master) = way(NEAR * size).or_else(|| way(extent))?;
-        distance.is_finite().then_some(StartingNode { node, master, normal, distance, size })
+        distance.is_finite().then_some(StartingNode { node, master: master.nodes[0], normal, distance, size })
     };
     parallel::map(nodes.len(), AT_A_TIME, place).into_iter().flatten().collect()
 }
