@@ -4,7 +4,7 @@ use super::listed_processes::each_process;
 use crate::diagnostics::{Diagnostic, Place};
 use crate::model::ModelPart;
 use crate::parameters::{Interval, Node};
-use crate::processes::{NamedSurface, ProcessEntry};
+use crate::processes::NamedSurface;
 
 /// Nodes of the surfaces of one pair, both sides together.
 ///
@@ -23,42 +23,43 @@ pub struct Surface {
 ///
 /// Parts that the mesh does not have are left out: the process that names them says so.
 pub fn surfaces(deck: &Node, part: &ModelPart) -> Vec<Surface> {
+    pairings(deck, part).into_iter().flat_map(|pairing| pairing.surfaces).collect()
+}
+
+/// A process of the deck with the surfaces that it names.
+pub struct Pairing {
+    /// Thing that it puts between them, e.g. contact; empty for nothing.
+    puts: &'static str,
+    name: &'static str,
+    /// Place of its parameters, where it has any.
+    place: Option<Place>,
+    interval: Interval,
+    /// The surfaces.
+    pub surfaces: Vec<Surface>,
+}
+
+/// The processes of a stage with the surfaces that they name, in the order of the deck.
+pub fn pairings(deck: &Node, part: &ModelPart) -> Vec<Pairing> {
     let mut out = Vec::new();
     if let Some(lists) = deck.get("processes") {
         each_process(lists, &mut |entry, parameters| {
-            out.extend((entry.surfaces)(parameters).iter().map(|surface| Surface::new(surface, part)));
+            let interval = parameters.and_then(|node| node.get("interval"));
+            let interval = interval.and_then(|node| Interval::from_node(node).ok()).unwrap_or(Interval::ALWAYS);
+            let surfaces = (entry.surfaces)(parameters).iter().map(|surface| Surface::new(surface, part)).collect();
+            let place = parameters.map(Node::place);
+            out.push(Pairing { puts: entry.puts, name: entry.name, place, interval, surfaces });
         });
     }
     out
 }
 
-/// A process of the deck that puts something between surfaces.
-struct Pairing {
-    puts: &'static str,
-    name: &'static str,
-    place: Place,
-    interval: Interval,
-    surfaces: Vec<Surface>,
-}
-
-/// Warnings of pairs of surfaces between which two processes of the deck put the same, e.g. contact, at the same time.
-pub fn warnings_of_repeated_pairs(deck: &Node, part: &ModelPart) -> Vec<Diagnostic> {
-    let mut listed: Vec<(&'static ProcessEntry, Option<Node>)> = Vec::new();
-    if let Some(lists) = deck.get("processes") {
-        each_process(lists, &mut |entry, parameters| listed.push((entry, parameters.cloned())));
-    }
-    let pairing = |(entry, parameters): &(&'static ProcessEntry, Option<Node>)| {
-        let parameters = parameters.as_ref()?;
-        let interval = parameters.get("interval").and_then(|node| Interval::from_node(node).ok());
-        let named = (entry.surfaces)(Some(parameters));
-        let surfaces = named.iter().map(|surface| Surface::new(surface, part)).collect();
-        let interval = interval.unwrap_or(Interval::ALWAYS);
-        Some(Pairing { puts: entry.puts, name: entry.name, place: parameters.place(), interval, surfaces })
-    };
-    let all: Vec<Pairing> = listed.iter().filter(|(entry, _)| !entry.puts.is_empty()).filter_map(pairing).collect();
+/// Warnings of pairs of surfaces between which two processes put the same, e.g. contact, at the same time.
+pub fn warnings_of_repeated_pairs(pairings: &[Pairing]) -> Vec<Diagnostic> {
+    let acting = pairings.iter().filter(|pairing| !pairing.puts.is_empty());
+    let all: Vec<(Place, &Pairing)> = acting.filter_map(|pairing| Some((pairing.place.clone()?, pairing))).collect();
     let mut out = Vec::new();
-    for (at, later) in all.iter().enumerate() {
-        for earlier in &all[..at] {
+    for (at, (place, later)) in all.iter().enumerate() {
+        for (before, earlier) in &all[..at] {
             let begin = later.interval.begin.max(earlier.interval.begin);
             let together = begin < later.interval.end.min(earlier.interval.end);
             let repeats = later.surfaces.iter().any(|one| earlier.surfaces.iter().any(|other| one.is_of_pair(other)));
@@ -66,11 +67,11 @@ pub fn warnings_of_repeated_pairs(deck: &Node, part: &ModelPart) -> Vec<Diagnost
                 continue;
             }
             let fact = format!(
-                "{} puts {} between surfaces that have it by {} at {} already: both act",
-                later.name, later.puts, earlier.name, earlier.place
+                "{} puts {} between surfaces that have it by {} at {before} already: both act",
+                later.name, later.puts, earlier.name
             );
             let remedy = "keep one of the processes for these surfaces";
-            out.push(Diagnostic::warning("pair-given-twice", fact).at(later.place.clone()).remedy(remedy));
+            out.push(Diagnostic::warning("pair-given-twice", fact).at(place.clone()).remedy(remedy));
         }
     }
     out

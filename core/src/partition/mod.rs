@@ -20,7 +20,7 @@ mod tests;
 pub use common::common_nodes;
 pub use counts::{Counts, PRODUCTS, RankCounts, Repeats, Traffic};
 pub use facets::ContactFacet;
-pub use interfaces::{Surface, surfaces, warnings_of_repeated_pairs};
+pub use interfaces::{Pairing, Surface, pairings, surfaces, warnings_of_repeated_pairs};
 pub use share::{Shares, everywhere};
 
 use zelus_linear_algebra::{WeightedGraph, partition_graph};

@@ -24,7 +24,7 @@ use crate::entities::Interaction;
 use crate::io::{FileUse, Mark, check_files};
 use crate::model::{Model, ModelPart};
 use crate::parameters::{Interval, Node};
-use crate::partition::{Surface, surfaces, warnings_of_repeated_pairs};
+use crate::partition::{Surface, pairings, warnings_of_repeated_pairs};
 use crate::processes::{Process, TimeTable, time_tables_of};
 use crate::strategies::{Monitor, SolutionStrategy, unknowns_of_all};
 
@@ -100,8 +100,10 @@ impl BuiltStage {
         run.monitor.note(&says);
         run.report.linear_solver = says;
         run.report.sizes = sizes_of(part, &system);
-        warnings_of_repeated_pairs(&deck, part).into_iter().for_each(|warning| problems.push(warning));
-        let (name, warnings, surfaces) = (stage.name.clone(), problems, surfaces(&deck, part));
+        let pairings = pairings(&deck, part);
+        warnings_of_repeated_pairs(&pairings).into_iter().for_each(|warning| problems.push(warning));
+        let surfaces = pairings.into_iter().flat_map(|pairing| pairing.surfaces).collect();
+        let (name, warnings) = (stage.name.clone(), problems);
         let mut tables: Vec<TimeTable> = processes.iter().flat_map(|process| process.time_tables()).collect();
         deck.get("processes").into_iter().for_each(|lists| time_tables_of(lists, Interval::ALWAYS, &mut tables));
         Ok(Self {
