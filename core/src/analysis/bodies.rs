@@ -3,16 +3,14 @@
 //! Bodies are connected elements. Unknowns are the rigid-body modes of each body that its elements do not resist; supports,
 //! constraints, ties and places in contact are rows over them. Motions that all rows leave alone are free.
 
-use std::collections::BTreeMap;
-
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::entities::{Join, LocalSystems, Tangent, Want};
-use crate::model::{ModelPart, Rates, ScalarVariable, bodies_of_nodes};
+use crate::model::{ModelPart, NumberedBodies, Rates, ScalarVariable};
 use crate::processes::Prescription;
-use crate::strategies::body_of;
+use crate::strategies::body_in_words;
 use crate::vector3::{add, cross, dot, norm, scale, sub};
 
 /// Largest number of modes that are analysed: the cost grows with their third power.
@@ -69,7 +67,7 @@ pub(super) fn tell_what_holds(part: &ModelPart, system: &System, prescribed: &[P
     let by_friction = rows.free(part);
     for at in 0..bodies.bodies.len() {
         let [own, smooth, rough] = [&by_supports, &by_contact, &by_friction].map(|free| bodies.motions_of(at, free));
-        let Some(name) = bodies.name(at).filter(|_| own > 0) else { continue };
+        let Some(name) = body_in_words(part, bodies.bodies[at].0).filter(|_| own > 0) else { continue };
         let modes = format!("{name} has {own} rigid-body {}", if own == 1 { "mode" } else { "modes" });
         problems.push(if rough > 0 {
             let fact =
@@ -89,23 +87,20 @@ pub(super) fn tell_what_holds(part: &ModelPart, system: &System, prescribed: &[P
 
 impl<'a> Bodies<'a> {
     fn of(part: &'a ModelPart) -> Self {
-        let names = bodies_of_nodes(part);
-        let mut boxes: BTreeMap<usize, [[f64; 3]; 2]> = BTreeMap::new();
-        for (name, &x) in names.iter().zip(&part.nodes.initial) {
-            let Some(name) = *name else { continue };
-            boxes.entry(name).and_modify(|own| *own = joined(*own, [x; 2])).or_insert([x; 2]);
+        let NumberedBodies { of_node, first } = NumberedBodies::of(part);
+        let mut boxes = vec![[[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]]; first.len()];
+        for (body, &x) in of_node.iter().zip(&part.nodes.initial) {
+            body.iter().for_each(|&body| boxes[body] = joined(boxes[body], [x; 2]));
         }
-        let flat = boxes.iter().flat_map(|(&name, ends)| std::iter::once(name as f64).chain(ends.concat()));
-        for one in part.ranks.gather_numbers(&flat.collect::<Vec<f64>>()).concat().chunks_exact(7) {
-            let ends = [[one[1], one[2], one[3]], [one[4], one[5], one[6]]];
-            boxes.entry(one[0] as usize).and_modify(|own| *own = joined(*own, ends)).or_insert(ends);
+        for of_rank in part.ranks.gather_numbers(boxes.as_flattened().as_flattened()) {
+            let ends = of_rank.as_chunks::<3>().0.as_chunks::<2>().0;
+            boxes.iter_mut().zip(ends).for_each(|(own, other)| *own = joined(*own, *other));
         }
-        let body = |(&name, [low, high]): (&usize, &[[f64; 3]; 2])| {
-            (name, scale(add(*low, *high), 0.5), norm(sub(*high, *low)).max(f64::MIN_POSITIVE))
+        let body = |(name, [low, high]): (usize, [[f64; 3]; 2])| {
+            (name, scale(add(low, high), 0.5), norm(sub(high, low)).max(f64::MIN_POSITIVE))
         };
-        let bodies: Vec<(usize, [f64; 3], f64)> = boxes.iter().map(body).collect();
-        let place = |name: usize| bodies.binary_search_by_key(&name, |own| own.0).ok();
-        let of_node = names.into_iter().map(|name| name.and_then(place).unwrap_or(usize::MAX)).collect();
+        let bodies = first.into_iter().zip(boxes).map(body).collect();
+        let of_node = of_node.into_iter().map(|body| body.unwrap_or(usize::MAX)).collect();
         Self { part, of_node, bodies, motions: Vec::new() }
     }
 
@@ -243,19 +238,6 @@ impl<'a> Bodies<'a> {
         }
         let own = DMatrix::from_fn(n, free.len(), |row, column| free[column][of_body[row]]);
         own.rank(1e-4)
-    }
-
-    /// The smallest part that holds it, and its first node; `None` where another rank says it.
-    fn name(&self, body: usize) -> Option<String> {
-        let id = self.bodies[body].0;
-        let node = self.part.nodes.find(id).filter(|&node| self.part.owns_node(node as usize))?;
-        let part = body_of(&self.part.tree, node);
-        Some(
-            part.map_or_else(
-                || format!("the body of node {id}"),
-                |name| format!("the body of part {name} with node {id}"),
-            ),
-        )
     }
 }
 

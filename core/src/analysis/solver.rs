@@ -14,7 +14,7 @@ use crate::registered_kind;
 use crate::registry::{self, Registered};
 
 use crate::strategies::{
-    Builder, BuilderEntry, CentralDifferences, ConvergenceCriterion, CriterionEntry, CriterionRequest,
+    BodyBalance, Builder, BuilderEntry, CentralDifferences, ConvergenceCriterion, CriterionEntry, CriterionRequest,
     ExplicitSettings, ExplicitStrategy, LineSearch, LinearSolverRequest, NewtonSettings, Scheme, SchemeEntry,
     SchemeFactory, SchemeRequest, SolutionStrategy, StrategyEntry, StrategyRequest, frugal_linear_solver,
     linear_tolerance, make_linear_solver, multipliers,
@@ -411,6 +411,15 @@ impl SolverSettings {
         Ok((strategy, says))
     }
 
+    /// The rule for bodies out of balance; solvers without the setting leave it to the criterion.
+    fn body_balance(&self) -> Result<BodyBalance> {
+        Ok(match self.settings.node().get("check_body_balance").map(Node::bool).transpose()? {
+            Some(true) => BodyBalance::Required,
+            Some(false) => BodyBalance::Told,
+            None => BodyBalance::Unchecked,
+        })
+    }
+
     /// The strategy without wrappers of extensions.
     fn own_strategy(
         &self,
@@ -452,7 +461,7 @@ impl SolverSettings {
             compute_reactions: self.settings.get_bool("compute_reactions")?,
             reactions_of_constraints: self.settings.get_bool("reactions_of_constraints")?,
             move_mesh: self.settings.get_bool("move_mesh_flag")?,
-            requires_balance: self.settings.node().get("check_body_balance").map(Node::bool).transpose()?,
+            body_balance: self.body_balance()?,
             line_search: None,
             line_search_after_failure: search_after_failure.then(|| LineSearch::new(&empty)).transpose()?,
         };

@@ -19,7 +19,7 @@ use crate::model::{Carriers, EntityKind, ModelPart, Nodes, Owner, Role};
 use crate::register_variable;
 use crate::registry::Entry;
 use crate::strategies::{
-    Block, Form, Measure, NewtonRaphson, NewtonSettings, Silent, SolutionStrategy, StaticScheme, Tolerance,
+    Block, BodyBalance, Form, Measure, NewtonRaphson, NewtonSettings, Silent, SolutionStrategy, StaticScheme, Tolerance,
 };
 
 register_variable! {
@@ -250,7 +250,7 @@ impl Run {
             compute_reactions: true,
             reactions_of_constraints: true,
             move_mesh: true,
-            requires_balance: None,
+            body_balance: BodyBalance::Unchecked,
             line_search: None,
             line_search_after_failure: None,
         };

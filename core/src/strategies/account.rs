@@ -7,7 +7,7 @@ use crate::Carrier;
 use crate::assembly::{Assembler, Inertia, Push, System};
 use crate::diagnostics::Result;
 use crate::entities::PairState;
-use crate::model::{ModelPart, Rates, ScalarVariable};
+use crate::model::{ModelPart, Rates, ScalarVariable, mesh_box};
 use crate::vector3::{add, cross, norm, sub};
 
 /// Loads, internal forces, interactions, inertia and reactions; then the residual.
@@ -310,11 +310,6 @@ impl Sums {
 
 /// The centre of the box around the initial mesh of all ranks; collective.
 fn centre(part: &ModelPart) -> [f64; 3] {
-    let mut ends = [f64::INFINITY; 6];
-    for x in &part.nodes.initial {
-        (0..3).for_each(|c| (ends[c], ends[c + 3]) = (ends[c].min(x[c]), ends[c + 3].min(-x[c])));
-    }
-    let all = part.ranks.gather_numbers(&ends);
-    let least = |at: usize| all.iter().map(|of_rank| of_rank[at]).fold(f64::INFINITY, f64::min);
-    [0, 1, 2].map(|c| 0.5 * (least(c) - least(c + 3))).map(|x| if x.is_finite() { x } else { 0.0 })
+    let [low, high] = mesh_box(part);
+    std::array::from_fn(|c| 0.5 * (low[c] + high[c])).map(|x: f64| if x.is_finite() { x } else { 0.0 })
 }

@@ -10,19 +10,28 @@
 
 use super::account::Forces;
 use super::criterion::is_round_off;
-use super::whereabouts::body_of;
+use super::whereabouts::body_in_words;
 use crate::assembly::{Assembler, System};
-use crate::model::{ModelPart, Rates, bodies_of_nodes};
+use crate::model::{ModelPart, NumberedBodies, Rates};
 use crate::vector3::norm;
 
 /// Kinds of forces that act: loads, elements, interactions, inertia.
 const KINDS: usize = 4;
-/// Sums of a group: r², Σ r by component, f² by kind, Σ|f| by kind, r² at the start of the step.
-const SUMS: usize = 5 + 2 * KINDS;
-/// Place of the last of them.
-const START: usize = SUMS - 1;
 /// Share of the residual at the start of the step that is round-off.
 const ROUND_OFF: f64 = 1e-12;
+/// Place of the residual of the present state; that of the start of the step follows.
+const NOW: usize = 0;
+
+/// The rule for bodies whose forces are out of balance in a state that meets the criterion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BodyBalance {
+    /// The iteration goes on until the forces on each body are in balance.
+    Required,
+    /// The state is accepted, with a warning.
+    Told,
+    /// The state is accepted, and not looked at.
+    Unchecked,
+}
 
 /// A body that is out of balance.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,117 +58,134 @@ impl Imbalance {
             "{kind} of {unknown} on {body} are out of balance by {ratio:.1e} of the largest of them (tol {tolerance:.0e})"
         )
     }
-}
-
-/// The bodies of a part; alike on all ranks but for `of_node`.
-pub(super) struct Bodies {
-    /// Place of the body of each node; those behind the last for nodes of none.
-    of_node: Vec<usize>,
-    /// Id of the first node of each body.
-    names: Vec<usize>,
-}
-
-impl Bodies {
-    /// The bodies of connected elements; collective.
-    pub fn of(part: &ModelPart) -> Self {
-        let found = bodies_of_nodes(part);
-        let mut own: Vec<usize> = found.iter().copied().flatten().collect();
-        own.sort_unstable();
-        own.dedup();
-        let flat: Vec<f64> = own.iter().map(|&name| name as f64).collect();
-        let mut names: Vec<usize> =
-            part.ranks.gather_numbers(&flat).concat().iter().map(|&name| name as usize).collect();
-        names.sort_unstable();
-        names.dedup();
-        let place = |name: Option<usize>| name.and_then(|name| names.binary_search(&name).ok());
-        let of_node = found.into_iter().map(|name| place(name).unwrap_or(names.len())).collect();
-        Self { of_node, names }
-    }
 
     /// The body that is farthest out of balance beyond `tolerance`; `None` where each is in balance. Residuals are those that the
     /// equations see, now and at the start of the step. Collective.
-    pub fn imbalance(
-        &self,
+    pub fn largest(
+        groups: &Groups<'_>,
         part: &ModelPart,
-        system: &System,
-        assembler: &Assembler,
-        [balanced, start]: [&[f64]; 2],
+        residuals: [&[f64]; 2],
         forces: &Forces,
         tolerance: f64,
-    ) -> Option<Imbalance> {
-        let mut columns: Vec<&'static str> = system.dofs.variables().map(|variable| variable.column).collect();
-        columns.dedup();
-        let group = |n: usize| {
-            let dof = &system.dofs.dofs()[n];
-            let body = if dof.multiplier { None } else { Some(self.of_node[dof.node as usize]) };
-            let column = columns.iter().position(|column| *column == dof.variable.column).expect("one of them");
-            body.filter(|_| assembler.counts(n)).map(|body| (body * columns.len() + column, dof.variable.offset()))
-        };
-        let groups: Vec<Option<(usize, usize)>> = (0..system.dofs.len()).map(group).collect();
-        let count = (self.names.len() + 1) * columns.len();
-        let mut sums = vec![0.0; count * SUMS];
-        for (n, &(group, _)) in groups.iter().enumerate().filter_map(|(n, group)| Some((n, group.as_ref()?))) {
-            let own = &mut sums[group * SUMS..][..SUMS];
-            for (kind, of_kind) in forces[..KINDS].iter().enumerate() {
-                own[4 + kind] += of_kind[n] * of_kind[n];
-                own[4 + KINDS + kind] += of_kind[n].abs();
-            }
-        }
-        for &n in assembler.equations().unknowns() {
-            let Some((group, component)) = groups[n as usize] else { continue };
-            let own = &mut sums[group * SUMS..][..SUMS];
-            own[0] += balanced[n as usize] * balanced[n as usize];
-            own[1 + component] += balanced[n as usize];
-            own[START] += start[n as usize] * start[n as usize];
-        }
-        part.ranks.sum(&mut sums);
-        let ratio = |own: &[f64]| {
-            let largest = |terms: &[f64]| terms.iter().copied().fold(0.0, f64::max);
-            let by_norm = own[0].sqrt() / largest(&own[4..4 + KINDS]).sqrt().max(f64::MIN_POSITIVE);
-            let by_sum = norm([own[1], own[2], own[3]]) / largest(&own[4 + KINDS..START]).max(f64::MIN_POSITIVE);
-            by_norm.max(by_sum)
-        };
-        let mut beyond: Vec<(usize, f64)> = sums.chunks_exact(SUMS).map(ratio).enumerate().collect();
-        let falls = |group: usize| sums[group * SUMS] <= ROUND_OFF * ROUND_OFF * sums[group * SUMS + START];
-        beyond.retain(|&(group, ratio)| ratio > tolerance && !falls(group));
+    ) -> Option<Self> {
+        let terms = groups.terms(part, residuals, forces);
+        let mut beyond: Vec<(usize, f64)> = (0..groups.count()).map(|group| (group, terms.ratio(group))).collect();
+        beyond.retain(|&(group, ratio)| ratio > tolerance && !terms.has_fallen(group));
         if beyond.is_empty() {
             return None;
         }
-        let round_off = self.round_off(part, system, assembler, &groups, count);
-        beyond.retain(|&(group, _)| !is_round_off(sums[group * SUMS].sqrt(), round_off[group]));
+        let round_off = groups.round_off(part);
+        beyond.retain(|&(group, _)| !is_round_off(terms.residual[group][NOW].sqrt(), round_off[group]));
         let (group, ratio) = beyond.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let body = self.name(part, group / columns.len());
-        Some(Imbalance { body, unknown: columns[group % columns.len()], ratio, tolerance })
+        let columns = &groups.columns;
+        let body = match groups.bodies.first.get(group / columns.len()) {
+            Some(&first) => part.ranks.first_to_say(body_in_words(part, first)).unwrap_or_default(),
+            None => "nodes without elements".to_owned(),
+        };
+        Some(Self { body, unknown: columns[group % columns.len()], ratio, tolerance })
+    }
+}
+
+/// The unknowns by body and variable, multipliers aside; nodes of no element make a last body.
+pub(super) struct Groups<'a> {
+    bodies: &'a NumberedBodies,
+    system: &'a System,
+    assembler: &'a Assembler,
+    columns: Vec<&'static str>,
+    /// Place of the column of each kind of unknown; `None` for multipliers.
+    places: Vec<Option<usize>>,
+}
+
+impl<'a> Groups<'a> {
+    /// The groups of the unknowns of a system.
+    pub fn new(bodies: &'a NumberedBodies, system: &'a System, assembler: &'a Assembler) -> Self {
+        let dofs = &system.dofs;
+        let mut columns: Vec<&'static str> = dofs.variables().map(|variable| variable.column).collect();
+        columns.dedup();
+        let kinds = dofs.variables().zip(dofs.multipliers());
+        let place = |column| columns.iter().position(|own| *own == column);
+        let places = kinds.map(|(variable, &multiplier)| place(variable.column).filter(|_| !multiplier)).collect();
+        Self { bodies, system, assembler, columns, places }
+    }
+
+    fn count(&self) -> usize {
+        (self.bodies.first.len() + 1) * self.columns.len()
+    }
+
+    /// Group of an unknown that this rank counts.
+    fn of(&self, n: usize) -> Option<usize> {
+        let column = self.places[self.system.dofs.kinds()[n] as usize].filter(|_| self.assembler.counts(n))?;
+        let body = self.bodies.of_node[self.system.dofs.dofs()[n].node as usize];
+        Some(body.unwrap_or(self.bodies.first.len()) * self.columns.len() + column)
+    }
+
+    /// Unknowns that are solved for, with their groups.
+    fn solved(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let unknowns = self.assembler.equations().unknowns().iter().map(|&n| n as usize);
+        unknowns.filter_map(|n| Some((n, self.of(n)?)))
+    }
+
+    /// Terms of the balance of each group; collective.
+    fn terms(&self, part: &ModelPart, residuals: [&[f64]; 2], forces: &Forces) -> Terms {
+        let mut out = Terms::new(self.count());
+        for (n, group) in (0..self.system.dofs.len()).filter_map(|n| Some((n, self.of(n)?))) {
+            for (kind, of_kind) in forces[..KINDS].iter().enumerate() {
+                out.squares[group][kind] += of_kind[n] * of_kind[n];
+                out.sizes[group][kind] += of_kind[n].abs();
+            }
+        }
+        for (n, group) in self.solved() {
+            out.sum[group][self.system.dofs.dofs()[n].variable.offset()] += residuals[NOW][n];
+            for (sum, residual) in out.residual[group].iter_mut().zip(residuals) {
+                *sum += residual[n] * residual[n];
+            }
+        }
+        part.ranks.sum(out.residual.as_flattened_mut());
+        part.ranks.sum(out.sum.as_flattened_mut());
+        part.ranks.sum(out.squares.as_flattened_mut());
+        part.ranks.sum(out.sizes.as_flattened_mut());
+        out
     }
 
     /// Norm of the round-off of the residuals of each group; collective.
-    fn round_off(
-        &self,
-        part: &ModelPart,
-        system: &System,
-        assembler: &Assembler,
-        groups: &[Option<(usize, usize)>],
-        count: usize,
-    ) -> Vec<f64> {
-        let mut squares = vec![0.0; count];
-        let sizes = assembler.round_off(part, system);
-        for &n in assembler.equations().unknowns() {
-            if let Some((group, _)) = groups[n as usize] {
-                squares[group] += sizes[n as usize] * sizes[n as usize];
-            }
-        }
+    fn round_off(&self, part: &ModelPart) -> Vec<f64> {
+        let mut squares = vec![0.0; self.count()];
+        let sizes = self.assembler.round_off(part, self.system);
+        self.solved().for_each(|(n, group)| squares[group] += sizes[n] * sizes[n]);
         part.ranks.sum(&mut squares);
         squares.into_iter().map(f64::sqrt).collect()
     }
+}
 
-    /// The body in words: its smallest part and first node. Collective.
-    fn name(&self, part: &ModelPart, body: usize) -> String {
-        let Some(&id) = self.names.get(body) else { return "nodes without elements".to_owned() };
-        let node = part.nodes.find(id).filter(|&node| part.owns_node(node as usize));
-        let said = node.map(|node| match body_of(&part.tree, node) {
-            Some(name) => format!("the body of part {name} with node {id}"),
-            None => format!("the body of node {id}"),
-        });
-        part.ranks.first_to_say(said).unwrap_or_else(|| format!("the body of node {id}"))
+/// Sums over the unknowns of each group.
+struct Terms {
+    /// Σ r² of the unknowns that are solved for, now and at the start of the step.
+    residual: Vec<[f64; 2]>,
+    /// Σ r of these now, by component.
+    sum: Vec<[f64; 3]>,
+    /// Σ f² of all unknowns, by kind of force.
+    squares: Vec<[f64; KINDS]>,
+    /// Σ|f| of all unknowns, by kind of force.
+    sizes: Vec<[f64; KINDS]>,
+}
+
+impl Terms {
+    fn new(count: usize) -> Self {
+        let (squares, sizes) = (vec![[0.0; KINDS]; count], vec![[0.0; KINDS]; count]);
+        Self { residual: vec![[0.0; 2]; count], sum: vec![[0.0; 3]; count], squares, sizes }
+    }
+
+    /// Residual of a group by the largest of its forces: that of the norms or that of the sums, whichever is more.
+    fn ratio(&self, group: usize) -> f64 {
+        let largest = |terms: &[f64; KINDS]| terms.iter().copied().fold(0.0, f64::max);
+        let by_norm = self.residual[group][NOW].sqrt() / largest(&self.squares[group]).sqrt().max(f64::MIN_POSITIVE);
+        let by_sum = norm(self.sum[group]) / largest(&self.sizes[group]).max(f64::MIN_POSITIVE);
+        by_norm.max(by_sum)
+    }
+
+    /// Whether the residual of a group is round-off of that at the start of the step.
+    fn has_fallen(&self, group: usize) -> bool {
+        let [now, start] = self.residual[group];
+        now <= ROUND_OFF * ROUND_OFF * start
     }
 }

@@ -20,7 +20,7 @@ pub(super) use references::References;
 
 use super::account::Account;
 use super::balance::Balance;
-use super::body_balance::{Bodies, Imbalance};
+use super::body_balance::{BodyBalance, Groups, Imbalance};
 use super::condensing;
 use super::criterion::{ConvergenceCriterion, Measures, Verdict};
 use super::gathered::Gathered;
@@ -35,7 +35,7 @@ use super::whereabouts::whereabouts;
 use crate::assembly::{Assembler, AssemblerState, System, impose_constraints};
 use crate::diagnostics::unfit;
 use crate::diagnostics::{Diagnostic, Place, Result};
-use crate::model::ModelPart;
+use crate::model::{ModelPart, NumberedBodies};
 
 /// Nodes that a message of a failure describes.
 const DESCRIBED: usize = 4;
@@ -61,9 +61,8 @@ pub struct NewtonSettings {
     pub reactions_of_constraints: bool,
     /// Whether nodes follow the unknown that moves the mesh.
     pub move_mesh: bool,
-    /// Whether an iteration goes on until the forces on each body are in balance, or else the run is warned of forces that are not;
-    /// `None` leaves it to the criterion.
-    pub requires_balance: Option<bool>,
+    /// The rule for bodies that are out of balance where the criterion is met.
+    pub body_balance: BodyBalance,
     /// How much of an increment is taken; all of it when `None`.
     pub line_search: Option<LineSearch>,
     /// The same for steps that have failed, where they may be tried again so.
@@ -97,7 +96,7 @@ pub struct NewtonRaphson {
     /// Balance of the step that has just converged.
     pub(super) balance: Option<Balance>,
     /// Bodies of the part, once a state has converged.
-    bodies: Option<Bodies>,
+    bodies: Option<NumberedBodies>,
     /// Whether the run has been warned of bodies out of balance.
     warned_of_balance: bool,
 }
@@ -291,24 +290,27 @@ impl NewtonRaphson {
         let inertia = self.scheme.inertia(part, &system.dofs);
         let balance = self.account.balance(part, system, &mut self.assembler, residual, inertia.as_ref(), more)?;
         self.balance = Some(balance);
-        let required = self.settings.requires_balance;
-        let imbalance = if required.is_some() { self.imbalance(part, system, residual, references) } else { None };
+        let rule = self.settings.body_balance;
+        let imbalance = match rule {
+            BodyBalance::Unchecked => None,
+            BodyBalance::Required | BodyBalance::Told => self.imbalance(part, system, residual, references),
+        };
         self.phases.since("balance", start);
-        match imbalance {
-            Some(imbalance) if required == Some(true) => {
+        if rule == BodyBalance::Required {
+            if imbalance.is_some() {
                 self.balance = None;
-                Ok(Some(imbalance))
             }
-            Some(imbalance) => {
-                if !std::mem::replace(&mut self.warned_of_balance, true) {
-                    let remedy = "lower \"residual_relative_tolerance\", or set \"check_body_balance\" to true, which iterates on";
-                    let fact = format!("step {}: {}", part.info.step, imbalance.fact());
-                    self.messages.push(Diagnostic::warning("out-of-balance", fact).remedy(remedy));
-                }
-                Ok(None)
-            }
-            None => Ok(None),
+            return Ok(imbalance);
         }
+        if let Some(imbalance) = imbalance
+            && !std::mem::replace(&mut self.warned_of_balance, true)
+        {
+            let remedy =
+                "lower \"residual_relative_tolerance\", or set \"check_body_balance\" to true, which iterates on";
+            let fact = format!("step {}: {}", part.info.step, imbalance.fact());
+            self.messages.push(Diagnostic::warning("out-of-balance", fact).remedy(remedy));
+        }
+        Ok(None)
     }
 
     /// The body that is farthest out of balance in the state whose balance was taken last; collective.
@@ -320,11 +322,12 @@ impl NewtonRaphson {
         references: &References,
     ) -> Option<Imbalance> {
         let forces = self.account.pending_forces()?;
-        let bodies = self.bodies.get_or_insert_with(|| Bodies::of(part));
+        let bodies = self.bodies.get_or_insert_with(|| NumberedBodies::of(part));
         let tolerance = self.criterion.residual_tolerance().unwrap_or(BALANCE_TOLERANCE);
         let balanced = self.assembler.equations().balanced(residual);
         let start = references.start.first()?;
-        bodies.imbalance(part, system, &self.assembler, [&balanced, start], forces, tolerance)
+        let groups = Groups::new(bodies, system, &self.assembler);
+        Imbalance::largest(&groups, part, [&balanced, start], forces, tolerance)
     }
 
     /// Notes the energy of the present state where it is the largest so far.

@@ -19,6 +19,15 @@ pub(crate) fn body_of(part: &SubPart, node: u32) -> Option<&str> {
     body_of(smallest, node).or(Some(&smallest.name))
 }
 
+/// A body in words, by the id of its first node: its smallest part and that node; `None` on ranks that do not own the node.
+pub(crate) fn body_in_words(part: &ModelPart, first: usize) -> Option<String> {
+    let node = part.nodes.find(first).filter(|&node| part.owns_node(node as usize))?;
+    Some(match body_of(&part.tree, node) {
+        Some(name) => format!("the body of part {name} with node {first}"),
+        None => format!("the body of node {first}"),
+    })
+}
+
 /// The elements that are inside out in the present configuration, in words; collective.
 pub(super) fn inside_out(part: &ModelPart) -> Option<String> {
     let (elements, space) = (&part.elements, part.info.domain_size);

@@ -211,7 +211,10 @@ impl Stage {
             }
             let last = self.system.interactions.iter().flat_map(|interaction| interaction.last_messages(part));
             let mut last: Vec<Diagnostic> = last.chain(self.strategy.last_messages(part)).collect();
-            self.largest.see(part, &self.system);
+            // Explicit steps are too many to look at each.
+            if part.info.solver.explicit {
+                self.largest.see(part, &self.system);
+            }
             last.extend(self.largest.warnings(part));
             tell(part.ranks.problems_of_all(last), run.report, run.monitor);
             return Ok(false);
