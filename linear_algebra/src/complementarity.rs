@@ -5,6 +5,9 @@
 
 use crate::block_pivoting::{BlockPivoting, Exchange};
 
+/// Share of the pivot that a condition begins with, below which a pivot is zero but for round-off.
+const SINGULAR: f64 = 1e-12;
+
 /// Pivots a condition after which the problem counts as one that has no solution.
 const MOST_PIVOTS: usize = 20;
 
@@ -19,6 +22,8 @@ pub struct Complementarity {
     small: Vec<[f64; 2]>,
     /// Which conditions have exchanged w and z.
     exchanged: Vec<bool>,
+    /// The diagonal of M.
+    first_pivots: Vec<f64>,
 }
 
 impl Complementarity {
@@ -29,11 +34,12 @@ impl Complementarity {
     pub fn new(q: Vec<f64>, m: Vec<f64>, small: Vec<[f64; 2]>) -> Self {
         let n = q.len();
         assert!(m.len() == n * n && small.len() == n, "a square matrix and two sizes a condition");
-        Self { values: q, table: m, small, exchanged: vec![false; n] }
+        let first_pivots = (0..n).map(|at| m[at * n + at]).collect();
+        Self { values: q, table: m, small, exchanged: vec![false; n], first_pivots }
     }
 
     /// Solves the problem; of each condition whether z is positive or w is, and the value of that one. `None` where a pivot is not
-    /// positive, so that M is no P-matrix, or where pivots do not end.
+    /// positive beyond round-off, so that M is no P-matrix, or where pivots do not end.
     pub fn solve(mut self) -> Option<Vec<(bool, f64)>> {
         let mut rule = BlockPivoting::default();
         let mut left = MOST_PIVOTS * self.values.len();
@@ -54,11 +60,13 @@ impl Complementarity {
         self.values[at] < -self.small[at][usize::from(self.exchanged[at])]
     }
 
-    /// Exchanges w and z of a condition; `None` where their pivot is not positive.
+    /// Exchanges w and z of a condition; `None` where their pivot is not positive beyond round-off.
     fn pivot(&mut self, at: usize) -> Option<()> {
         let n = self.values.len();
         let pivot = self.table[at * n + at];
-        if pivot.is_nan() || pivot <= 0.0 {
+        let first = self.first_pivots[at];
+        let least = SINGULAR * if self.exchanged[at] { first.recip() } else { first };
+        if pivot.is_nan() || pivot <= least.max(0.0) {
             return None;
         }
         let mut row: Vec<f64> = self.table[at * n..(at + 1) * n].iter().map(|entry| -entry / pivot).collect();
@@ -127,6 +135,13 @@ mod tests {
     #[test]
     fn a_matrix_without_positive_pivots_has_no_solution_here() {
         assert_eq!(solve(&[-1.0, -1.0], &[0.0, 1.0, 1.0, 0.0]), None);
+    }
+
+    #[test]
+    fn a_pivot_that_is_round_off_of_the_first_one_has_no_solution_here() {
+        // Once the first condition is exchanged, the second has the pivot 1e-15: two supports of one motion, the last of which goes.
+        assert_eq!(solve(&[-1.0, -1.0], &[1.0, 1.0, 1.0, 1.0 + 1e-15]), None);
+        assert!(solve(&[-1.0, -3.0], &[1.0, 1.0, 1.0, 1.5]).is_some());
     }
 
     #[test]

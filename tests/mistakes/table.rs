@@ -82,7 +82,7 @@ pub const MISTAKES: &[Mistake] = &[
         make: |Files { deck, .. }| {
             let loads = deck["processes"]["loads_process_list"].as_array_mut().expect("a list");
             let mut other = loads[0].clone();
-            other["Parameters"]["direction"] = json!([0.1, -1.0, 0.0]);
+            other["Parameters"]["direction"] = json!([1.0, 0.0, 0.0]);
             other["Parameters"]["interval"] = json!([0.5, "End"]);
             loads.push(other);
         },
