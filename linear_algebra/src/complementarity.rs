@@ -6,7 +6,7 @@
 use crate::block_pivoting::{BlockPivoting, Exchange};
 
 /// Share of the pivot that a condition begins with, below which a pivot is zero but for round-off.
-const SINGULAR: f64 = 1e-12;
+const SINGULAR: f64 = 1e-9;
 
 /// Pivots a condition after which the problem counts as one that has no solution.
 const MOST_PIVOTS: usize = 20;

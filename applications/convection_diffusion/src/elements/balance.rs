@@ -12,7 +12,7 @@ use zelus_core::model::ProcessInfo;
 use zelus_core::scalar::Real;
 
 use super::contribution::Pointwise;
-use super::marks::{ABOUT_Y, AT_REST, LINEAR};
+use super::marks::{ABOUT_Y, AT_REST, CROSS_WIND_OF_ITERATE, CROSS_WIND_OF_STEP_START};
 use crate::coefficient::Local;
 
 /// Data of the whole step.
@@ -28,8 +28,19 @@ pub struct Step {
     pub cross_wind: f64,
     /// Gradients below this have no cross-wind diffusion (temperature per length).
     pub least_gradient: f64,
-    /// Whether the cross-wind diffusion is that of the iterate: a step of one linear solve.
-    pub frozen: bool,
+    /// The state that gives the cross-wind diffusion.
+    pub cross_wind_state: CrossWindState,
+}
+
+/// The state that gives the cross-wind diffusion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CrossWindState {
+    /// That of the iterate, with its derivatives in the tangent.
+    Present,
+    /// That of the iterate, a constant in the tangent.
+    Iterate,
+    /// That at the start of the step, which leaves the step linear.
+    StepStart,
 }
 
 /// Value of the step data: weight of the end of the step.
@@ -49,7 +60,11 @@ impl Step {
             dynamic_tau: info.value_or(DYNAMIC_TAU, 1.0),
             cross_wind: info.value_or(CROSS_WIND, 0.0),
             least_gradient: info.value_or(LEAST_GRADIENT, 0.0),
-            frozen: info.has(LINEAR),
+            cross_wind_state: match (info.has(CROSS_WIND_OF_ITERATE), info.has(CROSS_WIND_OF_STEP_START)) {
+                (true, _) => CrossWindState::Iterate,
+                (_, true) => CrossWindState::StepStart,
+                _ => CrossWindState::Present,
+            },
         }
     }
 }
@@ -140,9 +155,11 @@ impl<const NODES: usize> Pointwise for Point<'_, NODES> {
         let strong = self.radius.map_or(a, |radius| a - b[self.radial] / radius);
         (0..3).for_each(|i| b[i] += tau * strong * velocity[i]);
         if step.cross_wind > 0.0 {
-            let present = (temperature, gradient);
-            let frozen = (R::constant(temperature.value()), gradient.map(|g| R::constant(g.value())));
-            let (t, g) = if step.frozen { frozen } else { present };
+            let (t, g) = match step.cross_wind_state {
+                CrossWindState::Present => (temperature, gradient),
+                CrossWindState::Iterate => (R::constant(temperature.value()), gradient.map(|g| R::constant(g.value()))),
+                CrossWindState::StepStart => (R::constant(old), old_gradient.map(R::constant)),
+            };
             let mean: [R; 3] = std::array::from_fn(|i| (g[i] + old_gradient[i]) * 0.5);
             let slope = mean.iter().fold(R::zero(), |sum, g| sum + *g * *g);
             if slope.value() > step.least_gradient * step.least_gradient {

@@ -10,7 +10,9 @@ pub const PURE_CONVECTION: StepMark = StepMark::new("PURE_CONVECTION");
 pub const AT_CENTRE: StepMark = StepMark::new("GRADIENTS_AT_CENTRE");
 /// No heat is stored: steady state.
 pub const AT_REST: StepMark = StepMark::new("HEAT_AT_REST");
-/// Each step is one linear solve.
-pub const LINEAR: StepMark = StepMark::new("LINEAR_HEAT");
+/// The cross-wind diffusion is that of the iterate, a constant in the tangent.
+pub const CROSS_WIND_OF_ITERATE: StepMark = StepMark::new("CROSS_WIND_OF_ITERATE");
+/// The cross-wind diffusion is that at the start of the step.
+pub const CROSS_WIND_OF_STEP_START: StepMark = StepMark::new("CROSS_WIND_OF_STEP_START");
 /// Residuals are those of the strong form, to be projected onto the mesh.
 pub const PROJECTING: StepMark = StepMark::new("PROJECTING_RESIDUALS");

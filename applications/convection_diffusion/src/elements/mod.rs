@@ -12,6 +12,8 @@ mod registered;
 pub use balance::{CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, Point, Step, THETA, radial};
 pub use equation::{Equation, Terms};
 pub use explicit::{Explicit, STAGE, Subscales};
-pub use marks::{ABOUT_Y, AT_CENTRE, AT_REST, LINEAR, PROJECTING, PURE_CONVECTION};
+pub use marks::{
+    ABOUT_Y, AT_CENTRE, AT_REST, CROSS_WIND_OF_ITERATE, CROSS_WIND_OF_STEP_START, PROJECTING, PURE_CONVECTION,
+};
 pub use place::full_order;
 pub use plastic_heat::PLASTIC_HEAT_POWER;

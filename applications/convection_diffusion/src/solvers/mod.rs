@@ -11,7 +11,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Defaults, Node, Settings, Value};
 
 use crate::adoption;
-use crate::elements::{AT_CENTRE, AT_REST, CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, LINEAR, THETA};
+use crate::elements::{AT_CENTRE, AT_REST, CROSS_WIND, DYNAMIC_TAU, LEAST_GRADIENT, THETA};
 
 /// Variables that every node has; further ones are those that the deck names.
 const VARIABLES: [NodalVariable; 2] = [("TEMPERATURE", 1), ("REACTION_FLUX", 1)];
@@ -25,7 +25,6 @@ fn take_up(
 ) -> Result<()> {
     adoption::adopt(settings, part, report)?;
     part.info.values.extend([(THETA, theta), (DYNAMIC_TAU, tau), (CROSS_WIND, cross_wind), (LEAST_GRADIENT, least)]);
-    part.info.set(LINEAR, settings.get_str("analysis_type")? == "linear");
     part.info.set(AT_REST, false);
     part.info.set(AT_CENTRE, settings.node().get("gradients").and_then(Node::as_str) == Some("at_centre"));
     Ok(())

@@ -6,7 +6,7 @@ use zelus_core::register;
 
 use super::explicit::EXPLICIT_TRANSIENT;
 use crate::adoption::warn_of_no_storage;
-use crate::elements::PURE_CONVECTION;
+use crate::elements::{CROSS_WIND_OF_ITERATE, CROSS_WIND_OF_STEP_START, PURE_CONVECTION};
 use crate::scheme::SCHEME;
 use crate::semi_implicit::SEMI_IMPLICIT;
 
@@ -42,6 +42,15 @@ register! { SolverEntry "transient",
             let cross_wind = ["cross_wind_stabilization_factor", "cross_wind_least_gradient"];
             let parameters = [theta, read("dynamic_tau")?, read(cross_wind[0])?, read(cross_wind[1])?];
             super::take_up(settings, parameters, part, report)?;
+            let state = settings.get_str("transient_parameters.linear_cross_wind")?;
+            if !["of_step_start", "of_iterate"].contains(&state) {
+                let fact = format!("\"linear_cross_wind\" is \"{state}\"");
+                let problem = settings.error("transient_parameters.linear_cross_wind", "invalid-value", fact);
+                return Err(problem.remedy("use \"of_step_start\" or \"of_iterate\"").into());
+            }
+            let linear = settings.get_str("analysis_type")? == "linear";
+            part.info.set(CROSS_WIND_OF_ITERATE, linear && state == "of_iterate");
+            part.info.set(CROSS_WIND_OF_STEP_START, linear && state == "of_step_start");
             part.info.set(PURE_CONVECTION, settings.get_bool("pure_convection")?);
             warn_of_no_storage(part, "unless a process sets it, they store no heat", report);
             Ok(())
