@@ -224,6 +224,9 @@ fn of_node(node: &Node, path: &str, defaults: &Defaults) -> Value {
             let limited = if schema["type"] == "array" { &mut schema["items"] } else { &mut schema };
             limited[keyword] = json!(bound);
         }
+        if !entry.choices.is_empty() {
+            schema["enum"] = json!(entry.choices);
+        }
         if idle.is_some() {
             schema["deprecated"] = json!(true);
         }

@@ -7,6 +7,7 @@ mod blocks_of_case;
 mod support;
 mod histories;
 mod loads_and_supports;
+mod meaning;
 mod meshes_and_tables;
 mod ranges;
 mod table;

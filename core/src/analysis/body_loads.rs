@@ -2,13 +2,19 @@
 
 use std::collections::BTreeSet;
 
+use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::model::ModelPart;
 use crate::processes::{LoadCarrier, Process};
 
 /// Warns of body loads, e.g. gravity, on elements whose properties give no density; collective.
-pub(super) fn warn_of_body_loads(part: &ModelPart, processes: &[Box<dyn Process>], problems: &mut Report) {
-    let driving = processes.iter().filter(|process| process.drives());
+pub(super) fn warn_of_body_loads(
+    part: &ModelPart,
+    system: &System,
+    processes: &[Box<dyn Process>],
+    problems: &mut Report,
+) {
+    let driving = processes.iter().filter(|process| process.drives(part, system));
     let loads = driving.flat_map(|process| process.loads(part));
     for load in loads.filter(|load| matches!(load.on, LoadCarrier::History | LoadCarrier::Nodes)) {
         let found = Lacking::of(part, |at, variable| {

@@ -20,7 +20,7 @@ pub(super) fn warn_of_no_load(
     processes: &[Box<dyn Process>],
     problems: &mut Report,
 ) {
-    let drives = processes.iter().any(|process| process.drives())
+    let drives = processes.iter().any(|process| process.drives(part, system))
         || system.interactions.iter().any(|interaction| interaction.drives())
         || system.dofs.gather(part, 0).iter().any(|value| *value != 0.0)
         || system.elements.iter().chain(&system.conditions).any(|block| begins_with_forces(block.as_ref(), part));

@@ -53,6 +53,8 @@ pub struct SolverDefinition {
     pub variables: &'static [NodalVariable],
     /// Whether steps are explicit: without iterations, with a lumped mass.
     pub explicit: bool,
+    /// Whether one step far longer than the run stands for the steady state.
+    pub long_step: bool,
     /// Registered name of the time scheme that these settings ask for.
     pub scheme: fn(&Settings) -> Result<String>,
     /// Names the deprecated spellings of settings.
@@ -73,6 +75,7 @@ impl SolverDefinition {
         variant: |_| None,
         variables: &[],
         explicit: false,
+        long_step: false,
         scheme: |settings| settings.get_str("scheme_type").map(str::to_owned),
         adapt: |defaults| defaults,
         adopt: |_, _, _| Ok(()),
@@ -329,6 +332,11 @@ impl SolverSettings {
         let allowed = self.settings.node().get("step_cutting").map_or(Ok(true), Node::bool)?;
         let asked = self.cutting.unwrap_or_default();
         Ok(Cutting { times: if allowed { asked.times } else { 0 }, ..asked })
+    }
+
+    /// Whether one step far longer than the run stands for the steady state.
+    pub fn takes_long_step(&self) -> bool {
+        self.definition.long_step
     }
 
     /// Dimensions of the problem.

@@ -5,11 +5,15 @@ use zelus_linear_algebra::parallel;
 
 use crate::diagnostics::{Diagnostic, Report};
 use crate::geometry::Shape;
-use crate::model::{EntityTable, ModelPart, Role, ScalarVariable, SubPart};
+use crate::model::{EntityTable, ModelPart, Role, ScalarVariable, SubPart, mesh_box};
 use crate::processes::{Load, LoadCarrier, Prescription, Process};
+use crate::vector3::norm;
 
 /// Difference of two values that are the same, as a share of the larger.
 const SAME: f64 = 1e-12;
+
+/// Height of a planar model, as a share of its size, that is round-off.
+const FLAT: f64 = 1e-9;
 
 /// Entities that a thread takes at a time, at least.
 const ENTITIES: usize = 1 << 12;
@@ -37,6 +41,18 @@ pub(super) fn warn_of_twins(part: &ModelPart, problems: &mut Report) {
         );
         let remedy = "take them out of the mesh, unless bodies or loads are meant to lie over each other";
         problems.push(Diagnostic::warning("listed-twice", fact).remedy(remedy));
+    }
+}
+
+/// Warns of a planar model whose nodes do not lie in one plane z: elements leave their heights out, distances do not. Collective.
+pub(super) fn warn_of_height(part: &ModelPart, problems: &mut Report) {
+    let [low, high] = mesh_box(part);
+    let size = norm([high[0] - low[0], high[1] - low[1], 0.0]);
+    let height = high[2] - low[2];
+    if part.info.domain_size == 2 && height > FLAT * size {
+        let fact = format!("a planar model, but z of its nodes is from {} to {}", low[2], high[2]);
+        let remedy = "give all nodes the same z, or set \"domain_size\" to 3";
+        problems.push(Diagnostic::warning("out-of-plane", fact).remedy(remedy));
     }
 }
 

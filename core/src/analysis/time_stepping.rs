@@ -23,6 +23,8 @@ pub struct TimeStepping {
     rule: StepLength,
     /// Treatment of the last step where it would pass the end time.
     last_step: LastStep,
+    /// Whether one step far longer than the run is whole: it stands for the steady state.
+    long_step: bool,
 }
 
 /// Share of a step beyond the end up to which decks mean the whole step: they write an end a little before that of their last step.
@@ -78,7 +80,24 @@ impl TimeStepping {
                     .into());
             }
         };
-        Ok(Self { rule: StepLength::from_node(node)?, last_step })
+        let given: Vec<&str> = KEYS[..3].iter().copied().filter(|key| node.get(key).is_some()).collect();
+        if let [acts, .., last] = given[..] {
+            let fact = format!("\"time_stepping\" has {acts:?} and {last:?}: {acts:?} alone acts");
+            let problem = Diagnostic::warning("time-step", fact).at(node.key_place(last));
+            warnings.push(problem.remedy("keep the one that is meant"));
+        }
+        let rule = StepLength::from_node(node)?;
+        if let Some(fact) = rule.overlap() {
+            let problem = Diagnostic::warning("time-step", fact).at(node.key_place("time_step_intervals"));
+            warnings.push(problem.remedy("let each interval end where the next begins"));
+        }
+        Ok(Self { rule, last_step, long_step: true })
+    }
+
+    /// The rule for a solver in which a step far longer than the run is not the steady state: it is shortened, with a warning.
+    #[must_use]
+    pub fn without_long_step(self) -> Self {
+        Self { long_step: false, ..self }
     }
 
     /// End of the step of `length` from `time` in a run from `start` to `end`, and whether that step is shortened.
@@ -91,9 +110,8 @@ impl TimeStepping {
             LastStep::WhileBelow => whole,
             _ if beyond.abs() <= round_off => (end, false),
             LastStep::Whole => whole,
-            LastStep::Automatic if beyond <= MEANT * length || time <= start && length > ONE_STEP * (end - start) => {
-                whole
-            }
+            LastStep::Automatic if beyond <= MEANT * length => whole,
+            LastStep::Automatic if self.long_step && time <= start && length > ONE_STEP * (end - start) => whole,
             LastStep::Shortened if beyond <= 0.0 => whole,
             LastStep::Automatic | LastStep::Shortened => (end, true),
         }
@@ -183,6 +201,16 @@ impl StepLength {
             .at(node.place())
             .remedy("give \"time_step\", \"time_step_table\" or \"time_step_intervals\"")
             .into())
+    }
+
+    /// The fact that two intervals overlap by more than an end, of which the first by name acts.
+    fn overlap(&self) -> Option<String> {
+        let Self::Intervals(rules) = self else { return None };
+        let pairs = rules.iter().enumerate().flat_map(|(at, (a, _))| rules[at + 1..].iter().map(move |(b, _)| (a, b)));
+        let (from, to) = pairs
+            .map(|(a, b)| (a.begin.max(b.begin), a.end.min(b.end)))
+            .find(|(from, to)| to - from > ROUND_OFF * to.abs().max(from.abs()))?;
+        Some(format!("two of \"time_step_intervals\" contain the times from {from} to {to}: the first by name acts"))
     }
 
     fn next(&self, time: f64) -> Result<f64> {

@@ -35,6 +35,10 @@ pub struct Entry {
     pub without_effect: Option<String>,
     /// The numbers that it accepts, where they are limited.
     pub range: Option<Range>,
+    /// The words that it accepts; any where there are none.
+    pub choices: Vec<String>,
+    /// Path of the switch without which the key changes nothing.
+    pub switch: Option<String>,
 }
 
 /// The member of a file of defaults that lists keys without effect by the reason.
@@ -42,6 +46,12 @@ const WITHOUT_EFFECT: &str = "$without_effect";
 
 /// The member of a file of defaults that lists keys by the range of their numbers.
 const RANGES: &str = "$ranges";
+
+/// The member of a file of defaults that lists keys by the words that they accept.
+const CHOICES: &str = "$choices";
+
+/// The member of a file of defaults that lists keys by the switch without which they change nothing.
+const SWITCHES: &str = "$switches";
 
 /// The member of a file of defaults that shows how the object is used.
 const EXAMPLE: &str = "$example";
@@ -67,7 +77,8 @@ impl Defaults {
     /// without fraction stands for an integer. The comment above a key or at the end of its line documents it, the
     /// one above the opening brace the object. `$without_effect` is no key: it lists those that are read and change nothing,
     /// `{ "reason": ["key", "other.key"] }`. Nor is `$ranges`, which lists keys by the range of their numbers,
-    /// `{ "(0, 1]": ["key"] }`, nor `$example`, settings as a deck may give them.
+    /// `{ "(0, 1]": ["key"] }`, `$choices`, by the words that they accept, `{ "one | other": ["key"] }`, `$switches`, by the switch
+    /// without which they change nothing, `{ "switch": ["key"] }`, nor `$example`, settings as a deck may give them.
     ///
     /// # Errors
     /// `invalid-json`, `wrong-type` when the text is not an object, `unknown-key` when a key without effect or with a range is none,
@@ -75,9 +86,11 @@ impl Defaults {
     pub fn parse(name: &str, text: &str) -> Result<Self> {
         let (document, comments) = document::parse(text, Path::new(name), true)?;
         let mut node = document.root;
-        let [idle, ranges, example] = match &mut node.value {
-            Value::Object(members) => [WITHOUT_EFFECT, RANGES, EXAMPLE].map(|key| members.remove(key)),
-            _ => [None, None, None],
+        let [idle, ranges, choices, switches, example] = match &mut node.value {
+            Value::Object(members) => {
+                [WITHOUT_EFFECT, RANGES, CHOICES, SWITCHES, EXAMPLE].map(|key| members.remove(key))
+            }
+            _ => [const { None }; 5],
         };
         let example = example.map(|member| member.node);
         node.object()?;
@@ -96,6 +109,18 @@ impl Defaults {
                         .at(range.node.place())
                 };
                 entry.range = Some(Range::parse(&range.key).ok_or_else(problem)?);
+                Ok(())
+            })?;
+        }
+        if let Some(choices) = choices {
+            for_each_key(&choices.node, &mut entries, &mut |words, entry| {
+                entry.choices = words.key.split('|').map(|word| word.trim().to_owned()).collect();
+                Ok(())
+            })?;
+        }
+        if let Some(switches) = switches {
+            for_each_key(&switches.node, &mut entries, &mut |switch, entry| {
+                entry.switch = Some(switch.key.clone());
                 Ok(())
             })?;
         }
@@ -205,6 +230,8 @@ fn collect(node: &Node, prefix: &str, comments: &[Comment], out: &mut Vec<Entry>
             description: texts.join("\n"),
             without_effect: None,
             range: None,
+            choices: Vec::new(),
+            switch: None,
         });
         collect(&member.node, &path, comments, out);
     }
@@ -279,6 +306,9 @@ mod tests {
         let ranged = Defaults::parse("thing", r#"{ "a": 1.0, "$ranges": { "(0, inf)": ["a"] } }"#).unwrap();
         assert!(ranged.entries()[0].range.is_some_and(|range| !range.holds(0.0)));
         assert!(Defaults::parse("thing", r#"{ "a": 1, "$ranges": { "above 0": ["a"] } }"#).is_err());
+        let text = r#"{ "on": false, "a": "x", "$choices": { "x | y": ["a"] }, "$switches": { "on": ["a"] } }"#;
+        let entry = &Defaults::parse("thing", text).unwrap().entries()[1];
+        assert_eq!((entry.choices.join(" "), entry.switch.as_deref()), ("x y".to_owned(), Some("on")));
         let said: Vec<String> = defaults
             .entries()
             .iter()

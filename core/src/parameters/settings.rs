@@ -3,7 +3,7 @@
 use super::defaults::Defaults;
 use super::merge::Merger;
 use super::node::{Node, Value};
-use crate::diagnostics::{Diagnostic, Place, Report, Result};
+use crate::diagnostics::{Diagnostic, Place, Report, Result, did_you_mean};
 
 /// The checked settings of one object, complete with defaults.
 #[derive(Debug, Clone)]
@@ -45,16 +45,24 @@ impl Settings {
         }
         let node = merger.merge(&user, &defaults.node, &defaults.name);
         for entry in defaults.entries() {
-            let Some(range) = entry.range else { continue };
             let given = node.get_path(&entry.path).filter(|given| given.is_given());
             let Some(given) = given else { continue };
+            let word =
+                given.as_str().filter(|word| !entry.choices.is_empty() && !entry.choices.iter().any(|w| w == word));
+            if let Some(word) = word {
+                let fact = format!("\"{}\" of {} is {word:?}", entry.path, defaults.name);
+                let near = did_you_mean(word, entry.choices.iter().map(String::as_str));
+                let remedy = near.unwrap_or_else(|| format!("write one of {}", entry.choices.join(", ")));
+                merger.error(Diagnostic::error("invalid-value", fact).at(given.place()).remedy(remedy));
+            }
+            let Some(range) = entry.range else { continue };
             if let Some(problem) = range.problem(given, &format!("\"{}\" of {}", entry.path, defaults.name)) {
                 merger.error(problem.remedy(format!("{} is the default", entry.default)));
             }
         }
         let is_sound = !merger.failed;
         if is_sound {
-            warn_without_effect(&user, defaults, report);
+            warn_without_effect(&user, &node, defaults, report);
         }
         Some((Self { name: defaults.name.clone(), node }, is_sound))
     }
@@ -178,20 +186,31 @@ impl Settings {
     }
 }
 
-/// A key that changes nothing and is set to something else than its default deserves to be named.
-fn warn_without_effect(user: &Node, defaults: &Defaults, report: &mut Report) {
+/// Names keys of `user` that change nothing, wholly or while a switch of the `complete` settings is off, and are not at their default.
+fn warn_without_effect(user: &Node, complete: &Node, defaults: &Defaults, report: &mut Report) {
     for entry in defaults.entries() {
-        let Some(why) = &entry.without_effect else { continue };
-        let (Some(given), Some(default)) = (user.get_path(&entry.path), defaults.node.get_path(&entry.path)) else {
+        let is_off = |switch: &&String| complete.get_path(switch).and_then(Node::as_bool) == Some(false);
+        let switch = entry.switch.as_ref().filter(is_off);
+        if entry.without_effect.is_none() && switch.is_none() {
             continue;
-        };
+        }
+        // An object may be given in part: its other keys are at their defaults.
+        let given = complete.get_path(&entry.path).filter(|_| user.get_path(&entry.path).is_some());
+        let (Some(given), Some(default)) = (given, defaults.node.get_path(&entry.path)) else { continue };
         let same = match (given.as_f64(), default.as_f64()) {
             (Some(given), Some(default)) => given == default,
             _ => given.to_json() == default.to_json(),
         };
         if !same {
-            let fact = format!("\"{}\" of {} is read and changes nothing", entry.path, defaults.name);
-            report.push(Diagnostic::warning("key-without-effect", fact).at(given.place()).remedy(why.as_str()));
+            let key = format!("\"{}\" of {}", entry.path, defaults.name);
+            let (fact, remedy) = match (switch, &entry.without_effect) {
+                (Some(switch), _) => (
+                    format!("{key} changes nothing: \"{switch}\" is false"),
+                    format!("set \"{switch}\" to true, or take the key out"),
+                ),
+                (None, why) => (format!("{key} is read and changes nothing"), why.clone().unwrap_or_default()),
+            };
+            report.push(Diagnostic::warning("key-without-effect", fact).at(given.place()).remedy(remedy));
         }
     }
 }

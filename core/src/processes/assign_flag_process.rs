@@ -5,8 +5,9 @@
 use super::assign_to_entities::Container;
 use super::process::{Process, ProcessRequest};
 use super::target::Target;
+use crate::assembly::System;
 use crate::diagnostics::Result;
-use crate::model::{Model, flags};
+use crate::model::{Model, ModelPart, flags};
 use crate::processes::ProcessEntry;
 use crate::register;
 
@@ -52,7 +53,7 @@ impl AssignFlag {
 }
 
 impl Process for AssignFlag {
-    fn drives(&self) -> bool {
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         false
     }
 

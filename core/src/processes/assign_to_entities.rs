@@ -4,13 +4,13 @@
 //! the last value stays.
 
 use super::local_axes::LocalAxes;
-use super::prescription::{Load, LoadCarrier, is_load, lost_in_the_plane, of_components};
+use super::prescription::{Load, LoadCarrier, WithoutEffect, is_body_load, is_load, is_motion, of_components};
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report, Result, did_you_mean};
-use crate::model::{EntityTable, Fields, Model, ModelPart, Nodes, ScalarVariable};
+use crate::model::{EntityTable, Fields, Model, ModelPart, Nodes, ScalarVariable, SubPart};
 use crate::parameters::{Settings, SpaceTime};
 
 /// Entities of a model part that can carry data.
@@ -153,51 +153,66 @@ pub(super) fn centre(nodes: &[u32], positions: &[[f64; 3]]) -> [f64; 3] {
 }
 
 impl AssignToEntities {
-    /// Reason why the values set on conditions have no effect, where that is so.
-    fn idle(&self, part: &ModelPart) -> Result<Option<String>> {
-        if self.containers != [Container::Conditions] {
-            return Ok(None);
-        }
+    /// Reasons why the values set on entities of a kind have no effect.
+    fn idle(&self, part: &ModelPart) -> Result<Vec<WithoutEffect>> {
         let selection = self.target.selection(&part.tree)?;
-        let (table, path) = (&part.conditions, &self.target.path);
+        let reasons = self.containers.iter().filter_map(|container| self.idle_on(*container, part, selection));
+        Ok(reasons.collect())
+    }
+
+    fn idle_on(&self, container: Container, part: &ModelPart, selection: &SubPart) -> Option<WithoutEffect> {
+        let path = &self.target.path;
         let mut names: Vec<&str> = self.components.iter().map(|c| c.variable.column).collect();
         names.dedup();
-        let names = names.join(", ");
-        if selection.conditions.is_empty() && part.share.is_none() {
-            return Ok(Some(format!("{path} has no conditions that {names} could act on")));
-        }
-        let takes = |at: &u32| {
-            table.kinds[*at as usize]
-                .loads
-                .is_none_or(|loads| self.components.iter().any(|component| loads.contains(&component.variable.column)))
+        let loads = || names.iter().all(|name| is_load(name) || is_body_load(name) || is_motion(name));
+        let names_in_words = names.join(", ");
+        let (word, table, selected) = match container {
+            // Loads and motions have a history, and nothing reads them elsewhere.
+            Container::Nodes => {
+                let fact =
+                    format!("{names_in_words} of {path} is given to nodes without history, where nothing reads it");
+                return loads().then(|| WithoutEffect::whole(fact));
+            }
+            Container::Conditions => ("condition", &part.conditions, &selection.conditions),
+            Container::Elements => ("element", &part.elements, &selection.elements),
         };
-        if let Some(first) = selection.conditions.first()
-            && !selection.conditions.iter().any(takes)
-            && self.components.iter().all(|component| is_load(component.variable.column))
-        {
+        let Some(first) = selected.first() else {
+            let fact = format!("{path} has no {word}s that {names_in_words} could act on");
+            return part.share.is_none().then(|| WithoutEffect::whole(fact));
+        };
+        let reads = |at: &u32| match table.kinds[*at as usize].loads {
+            Some(own) => names.iter().any(|name| own.contains(name)),
+            None => container == Container::Conditions || !loads(),
+        };
+        if !selected.iter().any(reads) {
             let kind = table.kinds[*first as usize].name;
-            return Ok(Some(format!("no condition of {path} takes {names}; the first is a {kind}")));
+            let fact = format!("no {word} of {path} takes {names_in_words}; the first is a {kind}");
+            return Some(WithoutEffect::whole(fact));
         }
         let out_of_plane = |c: &EntityComponent| c.variable.component == Some(2) && part.info.domain_size == 2;
         let acts = self.components.iter().filter(|c| !c.value.is_zero());
         let (lost, all) = of_components(acts, out_of_plane);
-        Ok(lost_in_the_plane(&names, path, lost, all))
+        WithoutEffect::in_the_plane(&names_in_words, path, lost, all)
     }
 }
 
 impl Process for AssignToEntities {
     fn check(&self, model: &Model, _system: &System, warnings: &mut Report) -> Result<()> {
-        if let Some(fact) = self.idle(model.root(&self.target.path)?)? {
-            warnings.push(
-                Diagnostic::warning("acts-on-nothing", fact)
-                    .remedy("name the part that holds the conditions to load, and the variable they take: `zelus describe` of a condition says it"),
-            );
+        for idle in self.idle(model.root(&self.target.path)?)? {
+            let problem = Diagnostic::warning("acts-on-nothing", idle.fact).at(self.target.place.clone());
+            warnings.push(problem.remedy(
+                "name the part that holds the conditions to load, and the variable they take: `zelus describe` of a condition says it",
+            ));
         }
         Ok(())
     }
 
-    fn drives(&self) -> bool {
-        self.components.iter().any(|component| !component.value.is_zero())
+    fn drives(&self, part: &ModelPart, _system: &System) -> bool {
+        let gives = self.components.iter().any(|component| !component.value.is_zero());
+        let idle = || {
+            self.idle(part).is_ok_and(|idle| idle.iter().filter(|idle| idle.is_whole).count() == self.containers.len())
+        };
+        gives && !(self.target.is_of(part) && idle())
     }
 
     fn loads(&self, part: &ModelPart) -> Vec<Load> {

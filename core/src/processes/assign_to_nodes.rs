@@ -6,13 +6,13 @@
 
 use super::face_direction;
 use super::local_axes::LocalAxes;
-use super::prescription::{Load, LoadCarrier, Prescription, is_load, lost_in_the_plane, of_components};
+use super::prescription::{Load, LoadCarrier, Prescription, WithoutEffect, is_load, is_motion, of_components};
 use super::process::Process;
 use super::scalar_value::ScalarValue;
 use super::target::Target;
 use crate::assembly::{DofTable, System};
 use crate::diagnostics::{Diagnostic, Report, Result};
-use crate::model::{Model, ModelPart, Rates, ScalarVariable};
+use crate::model::{Model, ModelPart, ScalarVariable};
 use crate::parameters::SpaceTime;
 
 /// Value prescribed for one unknown.
@@ -95,23 +95,25 @@ impl AssignToNodes {
     }
 
     /// Why it does nothing, where that is so.
-    fn idle(&self, part: &ModelPart) -> Result<Option<String>> {
+    fn idle(&self, part: &ModelPart) -> Result<Option<WithoutEffect>> {
         let Target { path, process, .. } = &self.target;
         if self.target.selection(&part.tree)?.nodes.is_empty() && part.share.is_none() {
-            return Ok(Some(format!("{path} has no nodes that {process} could act on")));
+            return Ok(Some(WithoutEffect::whole(format!("{path} has no nodes that {process} could act on"))));
         }
         if self.components.iter().all(|component| component.value.is_none() && !component.fixed) {
-            return Ok(Some(format!("{process} on {path} gives no component a value, and fixes none")));
+            return Ok(Some(WithoutEffect::whole(format!(
+                "{process} on {path} gives no component a value, and fixes none"
+            ))));
         }
         let acts = |c: &&NodalComponent| c.value.as_ref().is_some_and(|value| !value.is_zero());
         let out_of_plane = |c: &NodalComponent| -> bool {
             let name = c.variable.column;
-            c.variable.component == Some(2) && part.info.domain_size == 2 && (moves(name) || is_load(name))
+            c.variable.component == Some(2) && part.info.domain_size == 2 && (is_motion(name) || is_load(name))
         };
         let name = self.components[0].variable.column;
         let (lost, of_value) = of_components(self.components.iter().filter(acts), out_of_plane);
-        if let Some(fact) = lost_in_the_plane(name, path, lost, of_value) {
-            return Ok(Some(fact));
+        if let Some(lost) = WithoutEffect::in_the_plane(name, path, lost, of_value) {
+            return Ok(Some(lost));
         }
         let loads: Vec<&str> =
             self.components.iter().filter(acts).map(|c| c.variable.column).filter(|column| is_load(column)).collect();
@@ -119,7 +121,7 @@ impl AssignToNodes {
             && part.share.is_none()
             && !self.is_taken(part, &loads)?
         {
-            return Ok(Some(format!("no condition at the nodes of {path} takes {name}")));
+            return Ok(Some(WithoutEffect::whole(format!("no condition at the nodes of {path} takes {name}"))));
         }
         Ok(None)
     }
@@ -140,18 +142,13 @@ impl AssignToNodes {
 
     /// The warning that a variable is fixed which is never solved for, e.g. a load: its values act all the same.
     fn fixed_in_vain(&self, dofs: &DofTable) -> Option<Diagnostic> {
-        let solved = |column: &str| moves(column) || dofs.variables().any(|variable| variable.column == column);
+        let solved = |column: &str| is_motion(column) || dofs.variables().any(|variable| variable.column == column);
         let component = self.components.iter().find(|c| c.fixed && !solved(c.variable.column))?;
         let Target { process, place, .. } = &self.target;
         let fact = format!("{process} fixes {}, which is not an unknown: it gives a value only", component.variable);
         let warning = Diagnostic::warning("not-an-unknown", fact).at(place.clone());
         (!dofs.is_empty()).then(|| warning.remedy("set \"constrained\": false"))
     }
-}
-
-/// Whether a variable is an unknown that moves or one of its derivatives, through which dynamics prescribes it.
-fn moves(column: &str) -> bool {
-    Rates::all().any(|rates| [Some(rates.unknown), Some(rates.first), rates.second].contains(&Some(column)))
 }
 
 impl Process for AssignToNodes {
@@ -177,20 +174,27 @@ impl Process for AssignToNodes {
         if let Some(warning) = self.fixed_in_vain(&system.dofs) {
             warnings.push(warning);
         }
-        if let Some(fact) = self.idle(model.root(&self.target.path)?)? {
-            let problem = Diagnostic::warning("acts-on-nothing", fact).at(self.target.place.clone());
+        if let Some(idle) = self.idle(model.root(&self.target.path)?)? {
+            let problem = Diagnostic::warning("acts-on-nothing", idle.fact).at(self.target.place.clone());
             warnings.push(problem.remedy("name the part and the components that are meant, or remove the process"));
         }
         Ok(())
     }
 
-    fn drives(&self) -> bool {
-        self.components.iter().filter_map(|component| component.value.as_ref()).any(|value| !value.is_zero())
+    fn drives(&self, part: &ModelPart, system: &System) -> bool {
+        // An unknown that is given in each step and not fixed is where the iteration begins.
+        let of_steps = self.target.interval.end > part.info.time;
+        let begins =
+            |c: &NodalComponent| of_steps && !c.fixed && system.dofs.variables().any(|v| v.column == c.variable.column);
+        let given = |c: &NodalComponent| c.value.as_ref().is_some_and(|value| !value.is_zero()) && !begins(c);
+        let idle = || matches!(self.idle(part), Ok(Some(idle)) if idle.is_whole);
+        self.components.iter().any(given) && !(self.target.is_of(part) && idle())
     }
 
     fn prescribes(&self, part: &ModelPart, time: f64) -> Vec<Prescription> {
-        let is_here = self.target.path.split('.').next() == Some(part.tree.name.as_str());
-        let Some(selection) = self.target.selection(&part.tree).ok().filter(|_| is_here) else { return Vec::new() };
+        let Some(selection) = self.target.selection(&part.tree).ok().filter(|_| self.target.is_of(part)) else {
+            return Vec::new();
+        };
         if !self.target.interval.contains(time) {
             return Vec::new();
         }
@@ -218,8 +222,10 @@ impl Process for AssignToNodes {
 
     fn before_loop(&mut self, model: &mut Model) -> Result<()> {
         if self.before_loop {
-            // a function like 1/t has no value at TIME 0, and needs none: the first step sets it
-            self.held = self.apply(model.root_mut(&self.target.path)?, false)?;
+            let part = model.root_mut(&self.target.path)?;
+            // A function like 1/t has no value at TIME 0, and needs none where a step sets it.
+            let only_now = self.target.interval.end <= part.info.time;
+            self.held = self.apply(part, only_now)?;
         }
         Ok(())
     }

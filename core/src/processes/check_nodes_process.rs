@@ -9,7 +9,7 @@ use super::scalar_value::ScalarValue;
 use super::target::{Target, scalar_variable, vector_variable};
 use crate::assembly::System;
 use crate::diagnostics::{Error, Result};
-use crate::model::{Model, ScalarVariable};
+use crate::model::{Model, ModelPart, ScalarVariable};
 use crate::parameters::{Settings, SpaceTime};
 use crate::processes::ProcessEntry;
 use crate::register;
@@ -60,7 +60,7 @@ fn build_vector(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
 }
 
 impl Process for CheckNodes {
-    fn drives(&self) -> bool {
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         false
     }
 

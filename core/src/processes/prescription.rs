@@ -2,7 +2,7 @@
 
 use crate::diagnostics::Place;
 use crate::entities::{ConditionEntry, ElementEntry};
-use crate::model::ScalarVariable;
+use crate::model::{Rates, ScalarVariable};
 use crate::parameters::Interval;
 use crate::registry;
 
@@ -58,16 +58,35 @@ pub(super) fn is_body_load(name: &str) -> bool {
     registry::all::<ElementEntry>().iter().any(|kind| kind.body_load.is_some_and(|(variable, _)| variable == name))
 }
 
+/// Whether a variable is an unknown of mechanics or heat or one of its derivatives.
+pub(super) fn is_motion(column: &str) -> bool {
+    Rates::all().any(|rates| [Some(rates.unknown), Some(rates.first), rates.second].contains(&Some(column)))
+}
+
 /// Components that meet a condition, and all of them.
 pub(super) fn of_components<T>(components: impl Iterator<Item = T>, condition: impl Fn(T) -> bool) -> (usize, usize) {
     components.fold((0, 0), |(some, all), component| (some + usize::from(condition(component)), all + 1))
 }
 
-/// The fact that a planar model takes some or all of the components of a vector for nothing.
-pub(super) fn lost_in_the_plane(names: &str, path: &str, lost: usize, components: usize) -> Option<String> {
-    match lost {
-        0 => None,
-        lost if lost == components => Some(format!("{names} of {path} has a component out of the plane only")),
-        _ => Some(format!("{names} of {path} has a component out of the plane, which is lost")),
+/// Values of a process that have no effect, wholly or in part.
+pub(super) struct WithoutEffect {
+    /// The fact, in words.
+    pub fact: String,
+    /// Whether none of the values has an effect.
+    pub is_whole: bool,
+}
+
+impl WithoutEffect {
+    /// Values without any effect.
+    pub fn whole(fact: String) -> Self {
+        Self { fact, is_whole: true }
+    }
+
+    /// A planar model takes some or all of the components of a vector for nothing.
+    pub fn in_the_plane(names: &str, path: &str, lost: usize, components: usize) -> Option<Self> {
+        let is_whole = lost == components;
+        let follows = if is_whole { " only" } else { ", which is lost" };
+        let fact = format!("{names} of {path} has a component out of the plane{follows}");
+        (lost > 0).then_some(Self { fact, is_whole })
     }
 }

@@ -51,8 +51,8 @@ pub trait Process: Send {
         Vec::new()
     }
 
-    /// Whether it may load or move the model at any time.
-    fn drives(&self) -> bool {
+    /// Whether it may load or move that root part at any time.
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         true
     }
 

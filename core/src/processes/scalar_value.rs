@@ -53,7 +53,7 @@ impl ScalarValue {
             return Ok(Self::Expression(Expression::from_node(node)?));
         }
         if node.as_object().is_some() {
-            return read_csv(node).map(Self::Table);
+            return read_csv(node).map(|(table, _)| Self::Table(table));
         }
         let fact = format!("a value must be a number, a function or a table, found {} ({node})", node.value.kind());
         let remedy = "write e.g. 1.0 or \"2.0*t\" or {\"name\": \"csv_table\", \"filename\": \"load.csv\"}";
@@ -105,9 +105,10 @@ pub(crate) fn time_tables_of(deck: &Node, interval: Interval, tables: &mut Vec<T
     let own = deck.get("interval").and_then(|node| Interval::from_node(node).ok()).unwrap_or(interval);
     if deck.get("name").and_then(Node::as_str) == Some("csv_table")
         && let Some(name) = deck.get("filename").and_then(Node::as_str)
-        && let Ok(table) = read_csv(deck)
+        && let Ok((table, missing)) = read_csv(deck)
     {
-        tables.extend(TimeTable::new(name, deck.key_place("filename"), &table, own));
+        let used = TimeTable::new(name, deck.key_place("filename"), &table, own);
+        tables.extend(used.map(|used| TimeTable { missing, ..used }));
     }
     let members = deck.as_object().into_iter().flat_map(|members| members.iter().map(|member| &member.node));
     members.chain(deck.as_array().into_iter().flatten()).for_each(|inner| time_tables_of(inner, own, tables));
@@ -118,7 +119,8 @@ fn table_file(node: &Node, name: &str) -> PathBuf {
     node.place().file.parent().unwrap_or(Path::new("")).join(name)
 }
 
-fn read_csv(node: &Node) -> Result<Table> {
+/// The table, and how many of its cells are empty and count as the default of `na_replace`.
+fn read_csv(node: &Node) -> Result<(Table, usize)> {
     let defaults = match &*CSV_DEFAULTS {
         Ok(defaults) => defaults,
         Err(problem) => return Err(Diagnostic::error("invalid-json", problem.to_string()).into()),
@@ -139,12 +141,16 @@ fn read_csv(node: &Node) -> Result<Table> {
 const NOT_AVAILABLE: [&str; 4] = ["", "n/a", "na", "-"];
 
 /// A table of two columns; "nan" is a missing value only where the deck says by what it is replaced.
-fn parse_csv(text: &str, csv: &CsvSettings, replaces_nan: bool, path: &Path) -> Result<Table> {
-    let number = |cell: &str, row: usize| {
+fn parse_csv(text: &str, csv: &CsvSettings, replaces_nan: bool, path: &Path) -> Result<(Table, usize)> {
+    let mut missing = 0;
+    let mut number = |cell: &str, row: usize| {
         let cell = cell.trim().trim_matches('"');
         match cell.parse::<f64>() {
             Ok(number) if number.is_finite() => Ok(number),
-            _ if NOT_AVAILABLE.iter().any(|word| word.eq_ignore_ascii_case(cell)) => Ok(csv.na_replace),
+            _ if NOT_AVAILABLE.iter().any(|word| word.eq_ignore_ascii_case(cell)) => {
+                missing += usize::from(!replaces_nan);
+                Ok(csv.na_replace)
+            }
             Ok(number) if number.is_nan() && replaces_nan => Ok(csv.na_replace),
             Ok(number) => Err(Diagnostic::error("invalid-table", format!("\"{cell}\" in the table is {number}"))
                 .at(Place::at(path, row as u32 + 1, 0))
@@ -173,5 +179,5 @@ fn parse_csv(text: &str, csv: &CsvSettings, replaces_nan: bool, path: &Path) -> 
         let problem = Diagnostic::error("invalid-table", "the table has no rows").at(Place::file(path));
         return Err(problem.remedy("give at least one row \"time, value\"").into());
     }
-    Ok(Table::new(points))
+    Ok((Table::new(points), missing))
 }

@@ -47,6 +47,11 @@ impl Target {
         self.path.split_once('.').map_or("", |(_, rest)| rest)
     }
 
+    /// Whether its part lies in that root part.
+    pub(super) fn is_of(&self, root: &ModelPart) -> bool {
+        self.path.split('.').next() == Some(root.tree.name.as_str())
+    }
+
     /// The selection in the tree of its root part.
     pub(super) fn selection<'t>(&self, tree: &'t SubPart) -> Result<&'t SubPart> {
         let gone = || Diagnostic::error("unknown-model-part", format!("the model part {:?} is gone", self.path));
@@ -62,8 +67,7 @@ impl Target {
     ) -> Option<Load> {
         let variables: Vec<ScalarVariable> =
             variables.filter(|variable| is_load(variable.column) || is_body_load(variable.column)).collect();
-        let is_here = self.path.split('.').next() == Some(part.tree.name.as_str());
-        let selection = self.selection(&part.tree).ok().filter(|_| is_here && !variables.is_empty())?;
+        let selection = self.selection(&part.tree).ok().filter(|_| self.is_of(part) && !variables.is_empty())?;
         let members = match on {
             LoadCarrier::History | LoadCarrier::Nodes => &selection.nodes,
             LoadCarrier::Conditions => &selection.conditions,

@@ -11,8 +11,12 @@ pub struct TimeTable {
     pub name: String,
     /// Where the deck names it.
     pub place: Place,
+    /// First time of the table, and whether its values change there: before it they go on with the first slope.
+    pub begin: (f64, bool),
     /// Last time of the table, and whether its values change there: beyond it they go on with the last slope.
     pub end: (f64, bool),
+    /// Cells that are empty, and count as zero since the deck does not say by what they are replaced.
+    pub missing: usize,
     /// When its process acts.
     pub interval: Interval,
 }
@@ -24,7 +28,36 @@ impl TimeTable {
     /// The use of a table; `None` for one of a single row, which is a constant.
     pub fn new(name: &str, place: Place, table: &Table, interval: Interval) -> Option<Self> {
         let [.., before, last] = table.points.as_slice() else { return None };
-        Some(Self { name: name.to_owned(), place, end: (last[0], before[1] != last[1]), interval })
+        let (first, second) = (table.points[0], table.points[1]);
+        let begin = (first[0], first[1] != second[1]);
+        Some(Self { name: name.to_owned(), place, begin, end: (last[0], before[1] != last[1]), missing: 0, interval })
+    }
+
+    /// The warning that it has empty cells.
+    pub fn lacks_values(&self) -> Option<Diagnostic> {
+        let Self { name, missing, .. } = self;
+        let cells =
+            if *missing == 1 { "1 empty cell, which counts" } else { &format!("{missing} empty cells, which count") };
+        let fact = format!("the table {name} has {cells} as 0");
+        let problem = Diagnostic::warning("missing-values", fact).at(self.place.clone());
+        (*missing > 0).then(|| problem.remedy("write the values, or give \"na_replace\", the number in their place"))
+    }
+
+    /// The warning that it begins after the first of the steps that read it, in a run with steps that end at `first` to `end`.
+    pub fn begins_late(&self, [first, end]: [f64; 2]) -> Option<Diagnostic> {
+        let (begin, changes) = self.begin;
+        let needed = first.max(self.interval.begin);
+        let acts = needed <= end.min(self.interval.end);
+        if !acts || begin <= needed + SHORT * (end - needed).abs() {
+            return None;
+        }
+        let follows = if changes { "follows the first slope" } else { "is the first one" };
+        let fact = format!(
+            "the table {} begins at time {begin}, and is read from time {needed} on: before its first row the value {follows}",
+            self.name
+        );
+        let remedy = "add a row for the start, or let \"interval\" of the process begin with the table";
+        Some(Diagnostic::warning("table-begins-late", fact).at(self.place.clone()).remedy(remedy))
     }
 
     /// The warning that it ends before the last step of a run from `start` to `end` that reads it.

@@ -7,7 +7,7 @@ use zelus_linear_algebra::{
 use crate::assembly::System;
 use crate::diagnostics::Result;
 use crate::model::ModelPart;
-use crate::parameters::{Node, Settings};
+use crate::parameters::{Node, Range, Settings};
 use crate::{register, registered_kind, registry};
 
 /// Arguments from which a linear solver is made.
@@ -49,12 +49,24 @@ pub(crate) fn tolerance(residual: f64) -> f64 {
     (LEFT * residual).clamp(TOLERANCES[0], TOLERANCES[1])
 }
 
+/// Numbers of `linear_solver_settings`, with their ranges; that of the tolerance is checked with all tolerances.
+const NUMBERS: [(&str, &str); 3] =
+    [("tolerance", "(-inf, inf)"), ("max_iteration", "[1, inf)"), ("direct_below", "[0, inf)")];
+
 /// The solver for `linear_solver_settings`, and a sentence that names the engine.
 ///
 /// # Errors
-/// An unknown name.
+/// An unknown name, `wrong-type` and `out-of-range` for numbers.
 pub(crate) fn make(request: &LinearSolverRequest<'_>) -> Result<(Box<dyn LinearSolver>, String)> {
     let settings = request.settings;
+    for (key, range) in NUMBERS {
+        let Some(given) = settings.node().get(key) else { continue };
+        given.f64()?;
+        let range = Range::parse(range).expect("an interval");
+        if let Some(problem) = range.problem(given, &format!("{key:?} of \"linear_solver_settings\"")) {
+            return Err(problem.remedy("take it out for the default").into());
+        }
+    }
     let given = settings.node().get("solver_type").map(|n| n.str()).transpose()?.unwrap_or("");
     let name = given.rsplit('.').next().unwrap_or(given);
     let name = if name.is_empty() { "automatic" } else { name };

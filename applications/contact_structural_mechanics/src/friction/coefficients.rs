@@ -1,6 +1,7 @@
 //! Coefficients of friction at the nodes, and the settings of friction.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
@@ -9,6 +10,9 @@ use zelus_core::model::ModelPart;
 use crate::interface::{Interface, Roles};
 use crate::law::{COULOMB, FrictionLaw, Margin, SlipRule};
 use crate::pairs::Friction;
+
+/// Coefficients that seem to be written in per cent: rough rubber has 2 or so, and far larger ones stand for perfect stick.
+const PER_CENT: RangeInclusive<f64> = 10.5..=100.0;
 
 /// Settings of friction.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,6 +58,7 @@ pub(crate) fn prepare(
     for interface in interfaces {
         let listed = settings.coefficients.get(&interface.key).copied().filter(|_| law.by_coefficients);
         let (mut slaves, mut bare) = (0, 0);
+        let mut of_sides: [Option<(f64, usize)>; 2] = [None; 2];
         let given = listed.filter(|coefficient| *coefficient > 0.0);
         for facet in &interface.facets {
             let own = part.properties.get(&facet.properties).and_then(|p| p.number(law.variable.name()));
@@ -75,11 +80,25 @@ pub(crate) fn prepare(
                 *sum += coefficient;
                 *count += 1;
             }
+            let side = &mut of_sides[usize::from(facet.role == Roles::Master)];
+            *side = side.or(own.map(|own| (own, facet.properties)));
             // The coefficient of a pair is that of its slave nodes.
             if facet.role != Roles::Master {
                 slaves += 1;
                 bare += usize::from(!is_given);
             }
+        }
+        if let [Some((own, id)), Some((other, other_id))] = of_sides
+            && own != other
+            && friction == Friction::Coulomb
+        {
+            let name = law.variable.name();
+            let fact = format!(
+                "pair \"{}\": {name} is {own} in properties {id} of the slave, and {other} in properties {other_id} of the master: \
+                 that of the slave counts",
+                interface.key
+            );
+            messages.push(Diagnostic::warning("friction-overridden", fact).remedy("give both sides the same"));
         }
         if bare == slaves {
             without.push(&interface.key);
@@ -100,6 +119,11 @@ pub(crate) fn prepare(
         );
         let remedy = "take one of the two out";
         messages.push(Diagnostic::warning("friction-overridden", fact).remedy(remedy));
+    }
+    if law.by_coefficients && PER_CENT.contains(&largest) {
+        let fact = format!("the largest {} is {largest}", law.variable.name());
+        let remedy = "write the ratio of forces, e.g. 0.3 for 30 %";
+        messages.push(Diagnostic::warning("large-friction", fact).remedy(remedy));
     }
     let column = part.nodes.values.values_mut(law.variable, 0);
     for (slot, (sum, count)) in column.iter_mut().zip(sums) {

@@ -1,8 +1,9 @@
 //! A process that gives the system of its stage an interaction: the end of all processes of contact and ties.
 
 use zelus_core::Result;
+use zelus_core::assembly::System;
 use zelus_core::entities::Interaction;
-use zelus_core::model::Model;
+use zelus_core::model::{Model, ModelPart};
 use zelus_core::processes::Process;
 
 /// Gives an interaction to the stage, and does nothing else.
@@ -19,7 +20,7 @@ impl InteractionProcess {
 }
 
 impl Process for InteractionProcess {
-    fn drives(&self) -> bool {
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         false
     }
 

@@ -47,7 +47,11 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     check_slaves(&settings, "mesh_tying_model_part", &whole.mesh_tying_model_part, &whole.assume_master_slave)?;
     let part = request.model.root_mut(&whole.model_part_name)?;
     let (mortar_type, tied) = tied(&settings, part.info.domain_size)?;
-    check_unknown(&settings, part, tied[0])?;
+    let Some(first) = tied.first() else {
+        let fact = format!("a model of {} dimensions has no components to tie", part.info.domain_size);
+        return Err(settings.error("variable_name", "tied-variable", fact).remedy("mend \"domain_size\" first").into());
+    };
+    check_unknown(&settings, part, *first)?;
     let formulation = find_tying_formulation(mortar_type)?;
     for (name, components) in formulation.variables {
         part.nodes.history.add_named(name, *components);

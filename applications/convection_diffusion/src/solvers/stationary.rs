@@ -13,6 +13,7 @@ register! { SolverEntry "stationary",
     like: &[("kratos", include_str!("../../../../configs/like_kratos/stationary.json"))],
     build: SolverDefinition {
         variables: &super::VARIABLES,
+        long_step: true,
         scheme: |_| Ok(SCHEME.to_owned()),
         adapt: super::adapt,
         adopt: |settings, part, report| {

@@ -21,6 +21,7 @@ register! { SolverEntry "transient",
             (method == Some("explicit")).then_some(EXPLICIT_TRANSIENT)
         },
         variables: &super::VARIABLES,
+        long_step: true,
         scheme: |settings| {
             let method = settings.get_str("time_integration_method")?;
             match method {
@@ -43,11 +44,6 @@ register! { SolverEntry "transient",
             let parameters = [theta, read("dynamic_tau")?, read(cross_wind[0])?, read(cross_wind[1])?];
             super::take_up(settings, parameters, part, report)?;
             let state = settings.get_str("transient_parameters.linear_cross_wind")?;
-            if !["of_step_start", "of_iterate"].contains(&state) {
-                let fact = format!("\"linear_cross_wind\" is \"{state}\"");
-                let problem = settings.error("transient_parameters.linear_cross_wind", "invalid-value", fact);
-                return Err(problem.remedy("use \"of_step_start\" or \"of_iterate\"").into());
-            }
             let linear = settings.get_str("analysis_type")? == "linear";
             part.info.set(CROSS_WIND_OF_ITERATE, linear && state == "of_iterate");
             part.info.set(CROSS_WIND_OF_STEP_START, linear && state == "of_step_start");

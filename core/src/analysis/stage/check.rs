@@ -6,7 +6,7 @@ use super::super::coincident_nodes::warn_of_coincident_nodes;
 use super::super::no_load::warn_of_no_load;
 use super::super::solver::TimeScheme;
 use super::super::soundness::{
-    prescriptions, warn_of_collapsed, warn_of_contradictions, warn_of_loads_given_twice, warn_of_twins,
+    prescriptions, warn_of_collapsed, warn_of_contradictions, warn_of_height, warn_of_loads_given_twice, warn_of_twins,
 };
 use super::built::BuiltStage;
 use super::problems::problems_of_all;
@@ -32,13 +32,19 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
     let middle = 0.5 * (schedule.start_time + schedule.end_time);
     let early = tables.iter().filter_map(|table| table.ends_early(schedule.interval()));
     early.for_each(|problem| problems.push(problem));
+    tables.iter().filter_map(|table| table.lacks_values()).for_each(|problem| problems.push(problem));
+    if let Some(first) = schedule.first_step_end() {
+        let late = tables.iter().filter_map(|table| table.begins_late([first, schedule.end_time]));
+        late.for_each(|problem| problems.push(problem));
+    }
     let of_blocks = system.elements.iter().chain(&system.conditions).flat_map(|block| block.warnings());
     of_blocks.for_each(|warning| problems.push(warning.clone()));
+    warn_of_height(part, &mut problems);
     warn_of_collapsed(part, &mut problems);
     warn_of_twins(part, &mut problems);
     warn_of_coincident_nodes(part, surfaces, &mut problems);
     warn_of_loads_given_twice(part, processes, &mut problems);
-    warn_of_body_loads(part, processes, &mut problems);
+    warn_of_body_loads(part, system, processes, &mut problems);
     warn_of_contradictions(part, processes, [middle, schedule.end_time], &mut problems);
     let is_static = matches!(solver.scheme()?, TimeScheme::Implicit(scheme) if scheme.is_static());
     if !is_static && part.info.step == 0 {

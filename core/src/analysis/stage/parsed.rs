@@ -60,6 +60,7 @@ impl<'a> ParsedStage<'a> {
         let stepping = solver.settings.get("time_stepping");
         let stepping = stepping.and_then(|node| TimeStepping::from_node(node, &mut of_solver));
         let stepping = of_solver.absorb(stepping);
+        let stepping = stepping.map(|own| if solver.takes_long_step() { own } else { own.without_long_step() });
         let cutting = of_solver.absorb(solver.cutting());
         let domain_size = of_solver.absorb(solver.domain_size());
         of_solver.absorb(solver.scheme().map(|_| ()));

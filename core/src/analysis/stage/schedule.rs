@@ -20,4 +20,10 @@ impl Schedule {
     pub fn interval(&self) -> [f64; 2] {
         [self.start_time, self.end_time]
     }
+
+    /// End of the first step, where its length is known.
+    pub fn first_step_end(&self) -> Option<f64> {
+        let length = self.stepping.next(self.start_time).ok()?;
+        Some(self.stepping.target(self.start_time, length, self.interval()).0)
+    }
 }

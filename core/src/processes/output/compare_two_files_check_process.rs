@@ -1,11 +1,12 @@
 //! Compares a file that the run writes with a reference, once the run is over.
 
+use crate::assembly::System;
 use std::path::{Path, PathBuf};
 
 use super::place::one_of;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::io::FileUse;
-use crate::model::Model;
+use crate::model::{Model, ModelPart};
 use crate::parameters::Defaults;
 use crate::processes::comparison::is_close;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
@@ -107,7 +108,7 @@ impl CompareTwoFiles {
 }
 
 impl Process for CompareTwoFiles {
-    fn drives(&self) -> bool {
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         false
     }
 

@@ -169,7 +169,7 @@ impl State for SavedCounter {
 }
 
 impl Process for FromJsonCheck {
-    fn drives(&self) -> bool {
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         false
     }
 

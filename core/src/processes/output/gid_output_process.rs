@@ -202,7 +202,7 @@ impl State for GidOutputState {
 }
 
 impl Process for GidOutput {
-    fn drives(&self) -> bool {
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         false
     }
 

@@ -45,7 +45,7 @@ impl Extrapolation {
 }
 
 impl Process for Extrapolation {
-    fn drives(&self) -> bool {
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         false
     }
 

@@ -343,7 +343,7 @@ impl<W: Write> Json<'_, W> {
 }
 
 impl Process for JsonOutput {
-    fn drives(&self) -> bool {
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         false
     }
 

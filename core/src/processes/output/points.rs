@@ -197,7 +197,7 @@ impl State for SavedLengths {
 }
 
 impl Process for PointsOutput {
-    fn drives(&self) -> bool {
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         false
     }
 

@@ -1,5 +1,6 @@
 //! Saves the whole run every so many steps, so much time or so many minutes.
 
+use crate::assembly::System;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -9,7 +10,7 @@ use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 use super::place::{PartPath, one_of};
 use crate::diagnostics::{Result, unfit};
 use crate::io::{FileUse, SAVED};
-use crate::model::Model;
+use crate::model::{Model, ModelPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
@@ -101,7 +102,7 @@ fn file(folder: &Path, part: &str, label: f64) -> PathBuf {
 }
 
 impl Process for SaveRestart {
-    fn drives(&self) -> bool {
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         false
     }
 

@@ -14,7 +14,7 @@ use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::io::results::Dataset;
 use crate::io::{FileUse, remove_series};
-use crate::model::{Model, SubPart};
+use crate::model::{Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
@@ -188,7 +188,7 @@ impl State for VtkOutputState {
 }
 
 impl Process for VtkOutput {
-    fn drives(&self) -> bool {
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         false
     }
 

@@ -1,0 +1,149 @@
+//! Decks that read well and mean something else than they seem to: each change is told with its code and its subject.
+
+use serde_json::{Value, json};
+
+use crate::DECK;
+use crate::support::{read_json, root, said, scratch_copy, zelus};
+use crate::table::{PRESSED, SLIDING, contact, load};
+
+/// A change of a deck of tests/cases, and words of the message that `zelus check` gives then.
+type Change = (&'static str, fn(&mut Value), &'static [&'static str]);
+
+fn stepping(deck: &mut Value) -> &mut Value {
+    &mut deck["solver_settings"]["time_stepping"]
+}
+
+const CHANGES: &[Change] = &[
+    (
+        PRESSED,
+        |deck| {
+            let process = &mut deck["processes"]["loads_process_list"][0];
+            process["python_module"] = json!("assign_vector_by_direction_to_element_process");
+            process["Parameters"]["model_part_name"] = json!("Structure.Upper");
+        },
+        &["warning[acts-on-nothing]", "no element of Structure.Upper takes LINE_LOAD", "warning[no-load]"],
+    ),
+    (
+        PRESSED,
+        |deck| load(deck)["variable_name"] = json!("REACTION"),
+        &["warning[acts-on-nothing]", "no condition of Structure.Top takes REACTION", "warning[no-load]"],
+    ),
+    (
+        PRESSED,
+        |deck| *stepping(deck) = json!({"time_step": 1e30}),
+        &["warning[time-step]", "the run from 0 to 1 is shorter"],
+    ),
+    (
+        PRESSED,
+        |deck| *stepping(deck) = json!({"time_step": 1.0, "time_step_table": [[0.0, 0.5], [1.0, 0.5]]}),
+        &["warning[time-step]", "\"time_step\" alone acts"],
+    ),
+    (
+        PRESSED,
+        |deck| {
+            let halves = json!({"a": {"interval": [0.0, 0.6], "time_step": 0.5}, "b": {"interval": [0.4, 1.0], "time_step": 0.5}});
+            *stepping(deck) = json!({"time_step_intervals": halves});
+        },
+        &["warning[time-step]", "contain the times from 0.4 to 0.6"],
+    ),
+    (
+        PRESSED,
+        |deck| contact(deck)["search_parameters"] = json!({"normal_orientation_threshold": 2.5}),
+        &["error[out-of-range]", "normal_orientation_threshold", "at least 0 and below 2"],
+    ),
+    (
+        PRESSED,
+        |deck| contact(deck)["advance_ALM_parameters"] = json!({"scale_factor": 1e6}),
+        &["warning[key-without-effect]", "\"advance_ALM_parameters.manual_ALM\" is false"],
+    ),
+    (
+        PRESSED,
+        |deck| {
+            deck["solver_settings"]["linear_solver_settings"] = json!({"solver_type": "amgcl", "tolerance": "small"})
+        },
+        &["error[wrong-type]", "a number"],
+    ),
+    (
+        PRESSED,
+        |deck| deck["solver_settings"]["linear_solver_settings"] = json!({"solver_type": "cg", "max_iteration": -5}),
+        &["error[out-of-range]", "\"max_iteration\"", "at least 1"],
+    ),
+    (
+        SLIDING,
+        |deck| contact(deck)["friction_coefficients"] = json!({"0": 30.0}),
+        &["warning[large-friction]", "the largest FRICTION_COEFFICIENT is 30"],
+    ),
+];
+
+/// Messages of `zelus check` on a changed copy of a case.
+fn check(case: &str, change: impl Fn(&mut Value), files: impl Fn(&std::path::Path)) -> String {
+    let scratch = scratch_copy(&root().join("tests/cases").join(case));
+    let path = scratch.path().join(DECK);
+    let mut deck = read_json(&path).expect("the deck");
+    change(&mut deck);
+    std::fs::write(&path, deck.to_string()).expect("the deck");
+    files(scratch.path());
+    said(&zelus(scratch.path(), &["check", DECK]))
+}
+
+#[test]
+fn a_change_of_meaning_is_told() {
+    for (case, change, words) in CHANGES {
+        let said = check(case, change, |_| ());
+        let missing: Vec<&&str> = words.iter().filter(|word| !said.contains(**word)).collect();
+        assert!(missing.is_empty(), "{case}: {missing:?} in {said}");
+    }
+}
+
+#[test]
+fn words_that_a_key_does_not_know_are_refused() {
+    let example = root().join("examples/transient_slab");
+    let scratch = scratch_copy(&example);
+    let said = said(&zelus(scratch.path(), &["check", DECK, "--set", "solver_settings.gradients=\"at_center\""]));
+    assert!(said.contains("error[invalid-value]") && said.contains("at_centre"), "{said}");
+}
+
+#[test]
+fn tables_that_begin_late_or_lack_values_are_told() {
+    let with = |rows: &str| {
+        check("structural/load_table", |_| (), |folder| std::fs::write(folder.join("load.csv"), rows).expect("a table"))
+    };
+    let late = with("time,pressure\n3.0,1.0e6\n4.0,2.0e6\n");
+    assert!(late.contains("warning[table-begins-late]") && late.contains("begins at time 3"), "{late}");
+    let empty = with("time,pressure\n0.0,1.0e6\n2.0,\n4.0,2.0e6\n");
+    assert!(empty.contains("warning[missing-values]") && empty.contains("1 empty cell, which counts as 0"), "{empty}");
+}
+
+#[test]
+fn a_planar_model_with_heights_is_told() {
+    let lifted = check(
+        PRESSED,
+        |_| (),
+        |folder| {
+            let path = folder.join("mesh.mdpa");
+            let mesh = std::fs::read_to_string(&path).expect("the mesh");
+            let first =
+                mesh.lines().skip_while(|line| !line.contains("Begin Nodes")).nth(1).expect("a node").to_owned();
+            let (rest, _) = first.trim_end().rsplit_once(char::is_whitespace).expect("three coordinates");
+            std::fs::write(&path, mesh.replacen(&first, &format!("{rest} 0.37"), 1)).expect("the mesh");
+        },
+    );
+    assert!(lifted.contains("warning[out-of-plane]") && lifted.contains("from 0 to 0.37"), "{lifted}");
+}
+
+#[test]
+fn unlike_friction_of_both_sides_is_told() {
+    let materials = "StructuralMaterials.json";
+    let unlike = |folder: &std::path::Path| {
+        let path = folder.join(materials);
+        let mut document = read_json(&path).expect("materials");
+        let sides = document["properties"].as_array_mut().expect("a list");
+        assert!(sides.len() > 1, "two materials");
+        for (at, side) in sides.iter_mut().enumerate() {
+            side["Material"]["Variables"]["FRICTION_COEFFICIENT"] = json!(0.1 + 0.2 * at as f64);
+        }
+        std::fs::write(&path, document.to_string()).expect("materials");
+    };
+    let said = check(SLIDING, |_| (), unlike);
+    assert!(said.contains("that of the slave counts"), "{said}");
+}
