@@ -21,7 +21,7 @@ use zelus_core::entities::find_kind;
 use zelus_core::geometry::{
     FacetShape, QUADRILATERAL_4, QUADRILATERAL_8, QUADRILATERAL_9, Shape, TRIANGLE_3, TRIANGLE_6, reversed,
 };
-use zelus_core::model::Role;
+use zelus_core::model::EntityRole;
 use zelus_linear_algebra::{Engine, MultigridSettings, Symmetry, System, create};
 
 /// Cells along an edge of the box whose matrix is multiplied: 47,000 equations, whose entries no cache holds.
@@ -105,7 +105,7 @@ fn main() {
     let elements =
         [("SmallDisplacementElement3D8N", "LinearElastic3DLaw"), ("TotalLagrangianElement3D8N", "HyperElastic3DLaw")];
     for (name, law) in elements {
-        let kind = find_kind(Role::Element, name).expect("registered");
+        let kind = find_kind(EntityRole::Element, name).expect("registered");
         let shape = Shape::of(3, 8).expect("a hexahedron");
         let places = cell(shape, 3, 0.05, &mut Random(1));
         let nodes: Vec<u32> = (0..8).collect();

@@ -25,6 +25,6 @@ pub use diagnostics::{Error, Result};
 #[doc(hidden)]
 pub use inventory;
 pub use zelus_linear_algebra::{
-    BlockPivoting, Carrier, Complementarity, Components, Exchange, State, Unknowns, WrongState, packed, parallel,
+    BlockPivoting, Complementarity, Components, Exchange, State, StateMapper, Unknowns, WrongState, packed, parallel,
     stored_as_bytes,
 };

@@ -71,7 +71,7 @@ pub(crate) fn matrices(system: &System<'_>, looks_at_bulk: bool) -> Result<(), S
 /// Equations whose row in the bulk is zero, such as those of multipliers.
 pub(crate) fn zero_in_bulk(system: &System<'_>) -> Vec<usize> {
     let is_own = system.shared.map(Ghosts::is_own);
-    let is_here = |i: &usize| is_own.as_ref().is_none_or(|is_own| is_own[*i]) && !system.layout.is_held(*i);
+    let is_here = |i: &usize| is_own.as_ref().is_none_or(|is_own| is_own[*i]) && !system.layout.is_inactive(*i);
     let alone = System { coupling: None, ..*system };
     let is_zero = |i: &usize| {
         system.bulk.prefetch_row(*i + ROWS_AHEAD);
@@ -155,7 +155,7 @@ pub(crate) fn refine(
     Refined { relative_residual: best, steps: most_steps }
 }
 
-/// `|A| |x|`, row by row, `x` being zero at equations that are held.
+/// `|A| |x|`, row by row, `x` being zero at inactive equations.
 pub(crate) fn magnitude(system: &System<'_>, x: &[f64]) -> Vec<f64> {
     let of_row = |i: usize| {
         let matrices = [Some(system.bulk), system.active_coupling()].into_iter().flatten();
@@ -166,7 +166,7 @@ pub(crate) fn magnitude(system: &System<'_>, x: &[f64]) -> Vec<f64> {
             })
             .sum()
     };
-    (0..x.len()).map(|i| if system.layout.is_held(i) { 0.0 } else { of_row(i) }).collect()
+    (0..x.len()).map(|i| if system.layout.is_inactive(i) { 0.0 } else { of_row(i) }).collect()
 }
 
 /// Whether the residual of `x` is the rounding error of its own products, so that no method does better.

@@ -5,18 +5,18 @@
 use crate::dense::{PARALLEL_WORK, for_each};
 
 /// A number that factors are kept in.
-pub(crate) trait Number: Copy + Send + Sync + Into<f64> {
+pub(crate) trait FactorScalar: Copy + Send + Sync + Into<f64> {
     /// The nearest number to `value`.
     fn of(value: f64) -> Self;
 }
 
-impl Number for f64 {
+impl FactorScalar for f64 {
     fn of(value: f64) -> Self {
         value
     }
 }
 
-impl Number for f32 {
+impl FactorScalar for f32 {
     fn of(value: f64) -> Self {
         value as f32
     }
@@ -48,7 +48,7 @@ fn tiles<T>(mut values: &[T], order: usize, pivots: usize) -> Vec<(usize, usize,
 }
 
 /// Runs `work` on the first column and the numbers of each tile of a trapezoid.
-fn each_tile<T: Number>(to: &mut [T], order: usize, pivots: usize, work: impl Fn(usize, &mut [T]) + Sync) {
+fn each_tile<T: FactorScalar>(to: &mut [T], order: usize, pivots: usize, work: impl Fn(usize, &mut [T]) + Sync) {
     let mut rest = to;
     let mut tiles = Vec::with_capacity(pivots / TILE + 1);
     for k in (0..pivots).step_by(TILE) {
@@ -60,7 +60,7 @@ fn each_tile<T: Number>(to: &mut [T], order: usize, pivots: usize, work: impl Fn
 }
 
 /// Keeps the trapezoid of a matrix whose column `k` is `column(k)`; entries above the diagonal are not used.
-pub(crate) fn keep_columns<'a, T: Number>(
+pub(crate) fn keep_columns<'a, T: FactorScalar>(
     to: &mut [T],
     order: usize,
     pivots: usize,
@@ -74,7 +74,7 @@ pub(crate) fn keep_columns<'a, T: Number>(
 }
 
 /// Keeps the trapezoid of a matrix whose row `i` is `row(i)`; entries above the diagonal are not used.
-pub(crate) fn keep_rows<'a, T: Number>(
+pub(crate) fn keep_rows<'a, T: FactorScalar>(
     to: &mut [T],
     order: usize,
     pivots: usize,
@@ -90,7 +90,7 @@ pub(crate) fn keep_rows<'a, T: Number>(
 }
 
 /// The diagonal of a trapezoid.
-pub(crate) fn diagonal<T: Number>(trapezoid: &[T], order: usize, pivots: usize) -> Vec<f64> {
+pub(crate) fn diagonal<T: FactorScalar>(trapezoid: &[T], order: usize, pivots: usize) -> Vec<f64> {
     let of_tile = |(first, width, tile): (usize, usize, &[T])| -> Vec<f64> {
         (0..width).map(|k| tile[k * (order - first + 1)].into()).collect()
     };
@@ -98,7 +98,7 @@ pub(crate) fn diagonal<T: Number>(trapezoid: &[T], order: usize, pivots: usize) 
 }
 
 /// Solves with the first rows of a lower trapezoid; the rest of `local` loses their part.
-pub(crate) fn forward<T: Number>(trapezoid: &[T], pivots: usize, local: &mut [f64]) {
+pub(crate) fn forward<T: FactorScalar>(trapezoid: &[T], pivots: usize, local: &mut [f64]) {
     let order = local.len();
     for (first, width, tile) in tiles(trapezoid, order, pivots) {
         let stride = order - first;
@@ -116,7 +116,7 @@ pub(crate) fn forward<T: Number>(trapezoid: &[T], pivots: usize, local: &mut [f6
 }
 
 /// Solves with the transpose of the first rows of a lower trapezoid, the entries of `local` after them being known.
-pub(crate) fn backward<T: Number>(trapezoid: &[T], pivots: usize, local: &mut [f64]) {
+pub(crate) fn backward<T: FactorScalar>(trapezoid: &[T], pivots: usize, local: &mut [f64]) {
     let order = local.len();
     for (first, width, tile) in tiles(trapezoid, order, pivots).into_iter().rev() {
         let stride = order - first;
@@ -134,7 +134,7 @@ pub(crate) fn backward<T: Number>(trapezoid: &[T], pivots: usize, local: &mut [f
 }
 
 /// `target -= C x`, where column `k` of C begins at `columns[k * stride]`.
-pub(crate) fn subtract_product<T: Number>(target: &mut [f64], columns: &[T], stride: usize, x: &[f64]) {
+pub(crate) fn subtract_product<T: FactorScalar>(target: &mut [f64], columns: &[T], stride: usize, x: &[f64]) {
     let rows = target.len();
     let mut passes = x.chunks_exact(PASS);
     let mut begin = 0;
@@ -154,7 +154,7 @@ pub(crate) fn subtract_product<T: Number>(target: &mut [f64], columns: &[T], str
 }
 
 /// `x -= Cᵀ y`, where column `k` of C begins at `columns[k * stride]`.
-pub(crate) fn subtract_sums<T: Number>(x: &mut [f64], columns: &[T], stride: usize, y: &[f64]) {
+pub(crate) fn subtract_sums<T: FactorScalar>(x: &mut [f64], columns: &[T], stride: usize, y: &[f64]) {
     let rows = y.len();
     if rows == 0 {
         return;
@@ -195,7 +195,7 @@ mod tests {
     }
 
     /// Solves with both triangles of a factor kept in `T`; its entries are exact in either precision.
-    fn solves<T: Number>(order: usize, pivots: usize) {
+    fn solves<T: FactorScalar>(order: usize, pivots: usize) {
         let columns: Vec<Vec<f64>> = (0..pivots).map(|k| (0..order).map(|i| entry(i, k)).collect()).collect();
         let mut kept = vec![T::of(0.0); trapezoid(order, pivots)];
         keep_columns(&mut kept, order, pivots, |k| &columns[k]);

@@ -40,7 +40,7 @@ impl Pivots {
 /// Factorises a square matrix of order `n` in place; pivots smaller than `limit` become `±limit`.
 pub(crate) fn factorise(values: &mut [f64], n: usize, limit: f64) -> Pivots {
     let mut pivots = Pivots { exchanges: Vec::with_capacity(n), replaced: Vec::new() };
-    let mut next = Block::new(BLOCK.min(n));
+    let mut next = ColumnBlock::new(BLOCK.min(n));
     if n > 0 {
         next.factorise(view_mut(values, n, n).get_mut(.., ..next.width), limit);
     }
@@ -51,7 +51,7 @@ pub(crate) fn factorise(values: &mut [f64], n: usize, limit: f64) -> Pivots {
         pivots.exchanges.extend(block.exchanges.iter().map(|&row| row + k as u32));
         pivots.replaced.extend(block.replaced.iter().map(|&step| step + k as u32));
         let after = k + width;
-        next = Block::new(BLOCK.min(n - after));
+        next = ColumnBlock::new(BLOCK.min(n - after));
         let (left, right) = values.split_at_mut(n * after);
         let done = view(&left[n * k..], n, width).subrows(k, n - k);
         let mut tiles = Vec::new();
@@ -115,13 +115,13 @@ fn exchange_rows(exchanges: &[u32], mut matrix: MatMut<'_, f64>) {
 }
 
 /// A block of columns, of all rows from its diagonal on.
-struct Block {
+struct ColumnBlock {
     width: usize,
     exchanges: Vec<u32>,
     replaced: Vec<u32>,
 }
 
-impl Block {
+impl ColumnBlock {
     fn new(width: usize) -> Self {
         Self { width, exchanges: Vec::with_capacity(width), replaced: Vec::new() }
     }

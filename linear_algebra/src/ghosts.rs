@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::vector::{self, Number};
+use crate::vector::{self, Scalar};
 
 /// Communication of the ranks that share a system; every method but the first two is collective.
 pub trait Processes: Send + Sync {
@@ -140,7 +140,7 @@ impl Ghosts {
     }
 
     /// Gives ghosts, of `width` entries each, the values of their owners; collective.
-    pub(crate) fn spread<T: Number>(&self, values: &mut [T], width: usize) {
+    pub(crate) fn spread<T: Scalar>(&self, values: &mut [T], width: usize) {
         let Some(processes) = &self.processes else { return };
         let arrived = processes.exchange_counted(&packed(&self.sent, values, width), &counts(&self.received, width));
         for_each(&self.received, arrived, width, |at, value| values[at] = T::from_f64(value));
@@ -169,14 +169,14 @@ impl Ghosts {
     }
 
     /// Inner product of vectors of own entries; collective.
-    pub(crate) fn dot<T: Number>(&self, a: &[T], b: &[T]) -> f64 {
+    pub(crate) fn dot<T: Scalar>(&self, a: &[T], b: &[T]) -> f64 {
         self.total(vector::dot(a, b))
     }
 
     /// Takes from `vector` its parts along `basis`, orthonormal vectors of own entries, and gives their sizes; collective.
     ///
     /// All products are those with the vector as it came, so that it is read once, and that they travel together.
-    pub(crate) fn orthogonalise<T: Number>(&self, basis: &[Vec<T>], vector: &mut [T]) -> Vec<f64> {
+    pub(crate) fn orthogonalise<T: Scalar>(&self, basis: &[Vec<T>], vector: &mut [T]) -> Vec<f64> {
         let own = vector::products(basis, vector);
         let sizes = match &self.processes {
             None => own,
@@ -190,7 +190,7 @@ impl Ghosts {
     }
 
     /// Euclidean norm of a vector of own entries; collective.
-    pub(crate) fn norm<T: Number>(&self, a: &[T]) -> f64 {
+    pub(crate) fn norm<T: Scalar>(&self, a: &[T]) -> f64 {
         let own = vector::norm(a);
         self.processes.as_ref().map_or(own, |processes| vector::norm(&processes.gather(&[own])))
     }

@@ -60,7 +60,7 @@ impl DenseFactor {
 }
 
 /// An equation that knows only itself, `diagonal x = b`, and the other equations that know it.
-struct Lone {
+struct InactiveEquation {
     at: u32,
     diagonal: f64,
     others: Vec<(u32, f64)>,
@@ -68,7 +68,7 @@ struct Lone {
 
 /// Partition of the equations of an interface, as the coupling decides it.
 struct Parts {
-    lone: Vec<Lone>,
+    inactive: Vec<InactiveEquation>,
     /// Local index of each equation of the dense block.
     kept: Vec<u32>,
     /// Entries of the coupling in the dense block.
@@ -82,18 +82,18 @@ impl Parts {
             let (columns, values) = coupling.row(at);
             columns.iter().zip(values).map(|(&j, &value)| (j as usize, value)).filter(|(_, value)| *value != 0.0)
         };
-        let mut lone_of: Vec<Option<Lone>> = (0..n)
+        let mut inactive_of: Vec<Option<InactiveEquation>> = (0..n)
             .map(|at| {
                 let mut entries = nonzero(at);
                 match (entries.next(), entries.next()) {
                     (Some((j, diagonal)), None) if j == at && !in_bulk(at) => {
-                        Some(Lone { at: at as u32, diagonal, others: Vec::new() })
+                        Some(InactiveEquation { at: at as u32, diagonal, others: Vec::new() })
                     }
                     _ => None,
                 }
             })
             .collect();
-        let kept: Vec<u32> = (0..n as u32).filter(|&at| lone_of[at as usize].is_none()).collect();
+        let kept: Vec<u32> = (0..n as u32).filter(|&at| inactive_of[at as usize].is_none()).collect();
         let mut dense_index = vec![usize::MAX; n];
         for (index, &at) in kept.iter().enumerate() {
             dense_index[at as usize] = index;
@@ -101,14 +101,14 @@ impl Parts {
         let mut entries = Vec::new();
         for at in 0..n {
             for (column, value) in nonzero(at) {
-                match &mut lone_of[column] {
-                    Some(lone) if column != at => lone.others.push((at as u32, value)),
+                match &mut inactive_of[column] {
+                    Some(inactive) if column != at => inactive.others.push((at as u32, value)),
                     Some(_) => {}
                     None => entries.push((dense_index[at], dense_index[column], value)),
                 }
             }
         }
-        Self { lone: lone_of.into_iter().flatten().collect(), kept, entries }
+        Self { inactive: inactive_of.into_iter().flatten().collect(), kept, entries }
     }
 }
 
@@ -161,7 +161,7 @@ impl Interface {
         let Some(coupling) = &self.newer else { return self.solve_factorised(x) };
         let n = x.len();
         let mut scale = vec![0.0; n];
-        self.parts.lone.iter().for_each(|lone| scale[lone.at as usize] = 1.0 / lone.diagonal.abs());
+        self.parts.inactive.iter().for_each(|inactive| scale[inactive.at as usize] = 1.0 / inactive.diagonal.abs());
         self.parts.kept.iter().zip(&self.factor.scaling.row).for_each(|(&at, row)| scale[at as usize] = *row);
         let rhs: Vec<f64> = x.iter().zip(&scale).map(|(x, scale)| x * scale).collect();
         let multiply = |x: &[f64], y: &mut [f64]| {
@@ -193,13 +193,13 @@ impl Interface {
     }
 
     fn solve_factorised(&self, x: &mut [f64]) {
-        let Parts { lone, kept, .. } = &self.parts;
-        for lone in lone {
-            x[lone.at as usize] /= lone.diagonal;
+        let Parts { inactive, kept, .. } = &self.parts;
+        for inactive in inactive {
+            x[inactive.at as usize] /= inactive.diagonal;
         }
-        for lone in lone {
-            let value = x[lone.at as usize];
-            for &(at, entry) in &lone.others {
+        for inactive in inactive {
+            let value = x[inactive.at as usize];
+            for &(at, entry) in &inactive.others {
                 x[at as usize] -= entry * value;
             }
         }
@@ -276,7 +276,7 @@ mod tests {
         let schur = Square::over(vec![4.0, 1.0, 0.0, 1.0, 3.0, 0.0, 0.0, 0.0, 0.0], 3, false);
         let coupling = Csr::from_triplets(3, &[(0, 2, 5.0), (2, 2, -2.0)]);
         let interface = Interface::new(&schur, coupling, |at| at < 2, None);
-        assert_eq!((interface.parts.lone.len(), interface.parts.kept.len()), (1, 2));
+        assert_eq!((interface.parts.inactive.len(), interface.parts.kept.len()), (1, 2));
         let mut x = [4.0 + 2.0 - 15.0, 1.0 + 6.0, 6.0];
         interface.solve(&schur, &mut x);
         for (x, exact) in x.iter().zip([1.0, 2.0, -3.0]) {

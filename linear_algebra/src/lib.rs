@@ -44,7 +44,7 @@ mod interface;
 mod direct;
 
 mod krylov;
-mod multigrid;
+mod multigrid_solver;
 
 mod condition;
 mod rank;
@@ -65,7 +65,7 @@ pub use solver::{
     DirectSettings, Engine, KrylovSettings, LinearSolver, MultigridSettings, Multipliers, Precondition, Preconditioner,
     PreconditionerFactory, SolveError, SolveReport,
 };
-pub use state::{Carrier, State, Unknowns, WrongState};
+pub use state::{State, StateMapper, Unknowns, WrongState};
 pub use system::{Layout, Symmetry, System};
 
 /// A solver of the kind asked for.
@@ -79,6 +79,6 @@ pub fn create(engine: Engine) -> Box<dyn LinearSolver> {
         Engine::Gmres { krylov: settings, restart } => {
             Box::new(krylov::KrylovSolver::new(krylov::Method::Gmres { restart }, settings))
         }
-        Engine::Multigrid(settings) => Box::new(multigrid::MultigridSolver::new(settings)),
+        Engine::Multigrid(settings) => Box::new(multigrid_solver::MultigridSolver::new(settings)),
     }
 }

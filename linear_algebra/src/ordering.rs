@@ -37,7 +37,7 @@ pub(crate) struct Vertices {
 }
 
 impl Vertices {
-    /// Gathers the equations of `pattern`, those with `last` apart from the others of their node, those that are held not at all.
+    /// Gathers the equations of `pattern`, those with `last` apart from the others of their node, inactive ones not at all.
     pub(crate) fn new(pattern: &Csr, layout: &Layout, last: &[bool]) -> Self {
         let nodes = layout.node.iter().max().map_or(0, |&node| node as usize + 1);
         let mut vertex_of_key = vec![NONE; 2 * nodes];
@@ -45,7 +45,7 @@ impl Vertices {
         let mut vertex_of = vec![NONE; pattern.rows];
         let mut interior = 0;
         for wanted in [false, true] {
-            for i in (0..pattern.rows).filter(|&i| last[i] == wanted && !layout.is_held(i)) {
+            for i in (0..pattern.rows).filter(|&i| last[i] == wanted && !layout.is_inactive(i)) {
                 let key = &mut vertex_of_key[2 * layout.node[i] as usize + usize::from(wanted)];
                 if *key == NONE {
                     *key = equations.len() as u32;

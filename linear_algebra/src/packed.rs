@@ -176,7 +176,7 @@ mod tests {
     use serde::Deserialize;
 
     use super::*;
-    use crate::{Carrier, State};
+    use crate::{State, StateMapper};
 
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     enum Kind {
@@ -207,7 +207,7 @@ mod tests {
 
     #[typetag::serde(name = "outer of packed")]
     impl State for Outer {
-        fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+        fn remap(&mut self, _mapper: &mut dyn StateMapper) {}
     }
 
     /// A state that is read through a table of functions.
@@ -218,7 +218,7 @@ mod tests {
 
     #[typetag::serde(name = "plain of packed")]
     impl State for Plain {
-        fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+        fn remap(&mut self, _mapper: &mut dyn StateMapper) {}
     }
 
     fn whole(depth: usize) -> Whole {

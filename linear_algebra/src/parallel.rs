@@ -153,9 +153,9 @@ pub fn largest(count: usize, length: usize, of: impl Fn(usize) -> f64 + Sync) ->
 
 /// Threads of their own.
 #[derive(Debug)]
-pub struct Pool(rayon::ThreadPool);
+pub struct ThreadPool(rayon::ThreadPool);
 
-impl Pool {
+impl ThreadPool {
     /// So many threads; for zero as many as there are processors.
     ///
     /// # Errors
@@ -223,7 +223,7 @@ mod tests {
 
     #[test]
     fn threads_of_their_own_do_the_work() {
-        let pool = Pool::new(3).unwrap();
+        let pool = ThreadPool::new(3).unwrap();
         assert_eq!((pool.threads(), pool.run(threads)), (3, 3));
     }
 

@@ -15,7 +15,7 @@ pub fn rank(system: &System<'_>) -> Option<usize> {
     if n > MOST_EQUATIONS {
         return None;
     }
-    let matrix = match system.layout.held.is_empty() {
+    let matrix = match system.layout.inactive.is_empty() {
         true => system.merged(),
         false => Reduced::new(system).system(system).merged(),
     };

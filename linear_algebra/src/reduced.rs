@@ -1,4 +1,4 @@
-//! A system without the equations that are held.
+//! A system without inactive equations.
 
 use crate::csr::Csr;
 use crate::system::{Layout, System};
@@ -18,7 +18,7 @@ impl Reduced {
     /// The reduced system of a system that is not shared.
     pub(crate) fn new(system: &System<'_>) -> Self {
         let whole = system.layout;
-        let equations: Vec<u32> = (0..system.equations() as u32).filter(|&e| !whole.is_held(e as usize)).collect();
+        let equations: Vec<u32> = (0..system.equations() as u32).filter(|&e| !whole.is_inactive(e as usize)).collect();
         let mut number = vec![NONE; system.equations()];
         equations.iter().enumerate().for_each(|(at, &e)| number[e as usize] = at as u32);
         let matrix = |of: &Csr| {
@@ -38,7 +38,7 @@ impl Reduced {
             node: equations.iter().map(|&e| whole.node[e as usize]).collect(),
             multiplier: equations.iter().map(|&e| whole.multiplier[e as usize]).collect(),
             near_null_space: Vec::new(),
-            held: Vec::new(),
+            inactive: Vec::new(),
         };
         Self { layout, bulk: matrix(system.bulk), coupling: system.coupling.map(matrix), equations }
     }

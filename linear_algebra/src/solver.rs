@@ -104,7 +104,7 @@ pub trait LinearSolver: Send {
     }
 
     /// Sets the relative residual that is enough for the next solves; engines ask no more of themselves than their settings do.
-    fn aim(&mut self, _: f64) {}
+    fn set_forcing_term(&mut self, _: f64) {}
 
     /// Bytes that it takes beside the matrix, about, for systems of this size; 0 where that is not known.
     fn needs(&self, _equations: usize, _entries: usize) -> u64 {
@@ -116,8 +116,8 @@ pub trait LinearSolver: Send {
         false
     }
 
-    /// Whether it solves systems of this size some of whose equations are held ([`Layout::held`](crate::Layout::held)).
-    fn takes_held(&self, _equations: usize, _entries: usize) -> bool {
+    /// Whether it solves systems of this size some of whose equations are inactive ([`Layout::inactive`](crate::Layout::inactive)).
+    fn takes_inactive_rows(&self, _equations: usize, _entries: usize) -> bool {
         false
     }
 
@@ -250,14 +250,14 @@ pub enum Preconditioner {
 pub struct MultigridSettings {
     /// Relative residual at which iteration stops, with the equations of multipliers at the size of forces.
     pub tolerance: f64,
-    /// The same for solves of which less is asked ([`LinearSolver::aim`]), at most.
+    /// The same for solves of which less is asked ([`LinearSolver::set_forcing_term`]), at most.
     pub loosest: f64,
     /// Largest number of iterations.
     pub iterations: usize,
     /// Equations below which the direct engine solves: where rows have many entries, as those of solids in space, and else.
     pub least: [usize; 2],
     /// Whether the direct engine takes over where a factorisation would have cost less than the iterations of a solve.
-    pub yields: bool,
+    pub falls_back: bool,
 }
 
 impl MultigridSettings {
@@ -267,6 +267,6 @@ impl MultigridSettings {
 
 impl Default for MultigridSettings {
     fn default() -> Self {
-        Self { tolerance: 1e-9, loosest: 1e-9, iterations: 300, least: [3_000; 2], yields: false }
+        Self { tolerance: 1e-9, loosest: 1e-9, iterations: 300, least: [3_000; 2], falls_back: false }
     }
 }

@@ -11,16 +11,16 @@ use serde::{Deserialize, Serialize};
 /// `#[typetag::serde] impl State for …`, whose name tags it in the file.
 #[typetag::serde]
 pub trait State: Any + Send + Sync {
-    /// Shows its data of nodes and unknowns to a carrier, which maps them to other ranks, and drops data that are cheap to make again
+    /// Shows its data of nodes and unknowns to a mapper, which maps them to other ranks, and drops data that are cheap to make again
     /// and belong to the old ranks. The sequence of its calls must not depend on which of the ranks it is.
-    fn carry(&mut self, carrier: &mut dyn Carrier);
+    fn remap(&mut self, mapper: &mut dyn StateMapper);
 }
 
 /// Maps states of ranks to other ranks that run the same deck.
 ///
 /// It visits the states of all earlier ranks, then that of a new one at its start. At last it visits that of the first rank once more,
 /// and writes the state of the new one into it.
-pub trait Carrier {
+pub trait StateMapper {
     /// Indices of nodes that every rank has.
     fn nodes(&mut self, nodes: &mut [u32]);
 
@@ -34,7 +34,7 @@ pub trait Carrier {
     fn begin_unknowns(&mut self, unknowns: &Unknowns) -> Unknowns;
 }
 
-impl dyn Carrier + '_ {
+impl dyn StateMapper + '_ {
     /// The keys of a map, which are nodes that every rank has.
     pub fn node_map<T>(&mut self, map: &mut BTreeMap<u32, T>) {
         let (mut nodes, values): (Vec<u32>, Vec<T>) = std::mem::take(map).into_iter().unzip();

@@ -8,12 +8,12 @@ use crate::solver::SolveError;
 use crate::system::Layout;
 
 const NONE: usize = usize::MAX;
-/// The position of an equation that is held.
+/// The position of an inactive equation.
 const HELD: u32 = u32::MAX;
 
 /// A stretch of consecutive rows of a front and where it lies in the front of the parent.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Run {
+pub(crate) struct RowRun {
     /// First of the rows below the pivots, from 0.
     pub(crate) child: usize,
     /// First local index in the parent, from 0 and pivots first.
@@ -32,7 +32,7 @@ pub(crate) struct Front {
     /// First front of the subtree, which is `first..=self`.
     pub(crate) first: usize,
     /// `rows` in the front of the parent; no run crosses its pivots' end.
-    pub(crate) runs: Vec<Run>,
+    pub(crate) runs: Vec<RowRun>,
     /// Floating-point operations of a Cholesky factorisation of the whole subtree.
     pub(crate) subtree_work: f64,
 }
@@ -58,7 +58,7 @@ impl Front {
 /// When equations were kept last, the last front holds them as its columns; it is the root and is not eliminated.
 #[derive(Debug)]
 pub(crate) struct Symbolic {
-    /// Equation at each position; those that are held have none.
+    /// Equation at each position; inactive ones have none.
     pub(crate) equation: Vec<u32>,
     /// Position of each equation, [`HELD`] of those that have none.
     position: Vec<u32>,
@@ -319,7 +319,7 @@ fn column_counts(graph: &Graph, parent: &[usize], weight: &[usize]) -> Vec<usize
 }
 
 /// A group of columns that may become a front.
-struct Group {
+struct ColumnGroup {
     pivots: usize,
     order: usize,
     zeros: f64,
@@ -335,7 +335,7 @@ fn tolerable(pivots: usize, share: f64) -> bool {
 /// Groups of columns with (nearly) equal structure, in postorder; a few zeros buy larger dense blocks.
 fn amalgamate(parent: &[usize], counts: &[usize], weight: &[usize]) -> Vec<Vec<usize>> {
     let columns = parent.len();
-    let mut groups: Vec<Group> = Vec::new();
+    let mut groups: Vec<ColumnGroup> = Vec::new();
     let mut group_of = vec![0_usize; columns];
     for v in 0..columns {
         let continues = v > 0 && parent[v - 1] == v && counts[v - 1] == counts[v] + weight[v - 1];
@@ -344,7 +344,7 @@ fn amalgamate(parent: &[usize], counts: &[usize], weight: &[usize]) -> Vec<Vec<u
             group.pivots += weight[v];
             group.members.push(v);
         } else {
-            groups.push(Group {
+            groups.push(ColumnGroup {
                 pivots: weight[v],
                 order: counts[v],
                 zeros: 0.0,
@@ -396,9 +396,9 @@ fn amalgamate(parent: &[usize], counts: &[usize], weight: &[usize]) -> Vec<Vec<u
 }
 
 /// Where the rows of a child lie in its parent, as stretches.
-fn runs(rows: &[u32], parent: &Front) -> Vec<Run> {
+fn runs(rows: &[u32], parent: &Front) -> Vec<RowRun> {
     let pivots = parent.pivots();
-    let mut runs: Vec<Run> = Vec::new();
+    let mut runs: Vec<RowRun> = Vec::new();
     let mut at = 0;
     for (child, &row) in rows.iter().enumerate() {
         let row = row as usize;
@@ -412,7 +412,7 @@ fn runs(rows: &[u32], parent: &Front) -> Vec<Run> {
         };
         match runs.last_mut() {
             Some(run) if run.parent + run.len == local && local != pivots => run.len += 1,
-            _ => runs.push(Run { child, parent: local, len: 1 }),
+            _ => runs.push(RowRun { child, parent: local, len: 1 }),
         }
     }
     runs

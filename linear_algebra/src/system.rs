@@ -31,8 +31,8 @@ pub struct Layout {
     /// Vectors the bulk nearly maps to zero (rigid-body modes), for multigrid; may be empty.
     pub near_null_space: Vec<Vec<f64>>,
     /// Inactive rows (Dirichlet): solvers skip their rows, columns and right-hand sides, and return zero there. Empty where there are
-    /// none. For solvers that say so ([`LinearSolver::takes_held`](crate::LinearSolver::takes_held)).
-    pub held: Vec<bool>,
+    /// none. For solvers that say so ([`LinearSolver::takes_inactive_rows`](crate::LinearSolver::takes_inactive_rows)).
+    pub inactive: Vec<bool>,
 }
 
 impl Layout {
@@ -57,8 +57,8 @@ impl Layout {
     }
 
     /// Whether an equation is none.
-    pub fn is_held(&self, equation: usize) -> bool {
-        self.held.get(equation).is_some_and(|is_held| *is_held)
+    pub fn is_inactive(&self, equation: usize) -> bool {
+        self.inactive.get(equation).is_some_and(|is_inactive| *is_inactive)
     }
 }
 
@@ -122,16 +122,16 @@ impl<'a> System<'a> {
 
     /// Number of equations that are not held.
     pub fn free(&self) -> usize {
-        self.equations() - self.layout.held.iter().filter(|is_held| **is_held).count()
+        self.equations() - self.layout.inactive.iter().filter(|is_inactive| **is_inactive).count()
     }
 
     /// Sets the entries of inactive rows to zero.
-    pub fn clear_held(&self, values: &mut [f64]) {
-        let held = &self.layout.held;
-        let known = values.len().min(held.len());
+    pub fn clear_inactive(&self, values: &mut [f64]) {
+        let inactive = &self.layout.inactive;
+        let known = values.len().min(inactive.len());
         parallel::parts_mut(&mut values[..known], CHUNK, &|first, values| {
-            let both = values.iter_mut().zip(&held[first..]);
-            both.filter(|(_, is_held)| **is_held).for_each(|(value, _)| *value = 0.0);
+            let both = values.iter_mut().zip(&inactive[first..]);
+            both.filter(|(_, is_inactive)| **is_inactive).for_each(|(value, _)| *value = 0.0);
         });
     }
 
@@ -139,15 +139,15 @@ impl<'a> System<'a> {
     pub(crate) fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + use<'a> {
         let layout = self.layout;
         let of = move |matrix: &'a Csr| matrix.row(i).0.iter().zip(matrix.row(i).1);
-        let parts = match layout.is_held(i) {
+        let parts = match layout.is_inactive(i) {
             true => [None, None],
             false => [Some(self.bulk).filter(|bulk| i < bulk.rows), self.active_coupling()],
         };
         let all = parts.into_iter().flatten().flat_map(of).map(|(&j, &value)| (j as usize, value));
-        all.filter(move |(j, value)| *value != 0.0 && !layout.is_held(*j))
+        all.filter(move |(j, value)| *value != 0.0 && !layout.is_inactive(*j))
     }
 
-    /// The product of a row of both parts with `x`, which is zero at equations that are held.
+    /// The product of a row of both parts with `x`, which is zero at inactive equations.
     pub(crate) fn row_product(&self, i: usize, x: &[f64]) -> f64 {
         let of = |matrix: &Csr| {
             let (columns, values) = matrix.row(i);
@@ -157,14 +157,14 @@ impl<'a> System<'a> {
         bulk + self.active_coupling().map_or(0.0, of)
     }
 
-    /// `y = (bulk + coupling) x`, zero at equations that are held, as `x` is.
+    /// `y = (bulk + coupling) x`, zero at inactive equations, as `x` is.
     ///
     /// # Panics
     /// When a length is not the number of equations.
     pub fn mul_vec(&self, x: &[f64], y: &mut [f64]) {
         self.bulk.mul_vec(x, y);
         self.add_coupling_product(x, y);
-        self.clear_held(y);
+        self.clear_inactive(y);
     }
 
     /// As [`System::mul_vec`], to the bit, at equations that are not held, with the runs of the bulk's rows.
@@ -197,7 +197,7 @@ impl<'a> System<'a> {
         if let Some(coupling) = self.active_coupling() {
             coupling.mul_vec_subtract(x, r);
         }
-        self.clear_held(r);
+        self.clear_inactive(r);
         vector::norm(r)
     }
 

@@ -9,7 +9,7 @@ pub(crate) const CHUNK: usize = 1 << 14;
 
 /// `n` zeros, written by all threads. Addition to memory that nothing has written yet makes the system map it twice, and all processors
 /// wait for each other.
-pub fn zeros<T: Number>(n: usize) -> Vec<T> {
+pub fn zeros<T: Scalar>(n: usize) -> Vec<T> {
     let mut out = vec![T::default(); n];
     if n > CHUNK {
         clear(&mut out);
@@ -18,7 +18,7 @@ pub fn zeros<T: Number>(n: usize) -> Vec<T> {
 }
 
 /// Sets all numbers to zero.
-pub fn clear<T: Number>(values: &mut [T]) {
+pub fn clear<T: Scalar>(values: &mut [T]) {
     parallel::parts_mut(values, CHUNK, &|_, chunk| chunk.fill(T::default()));
 }
 
@@ -31,13 +31,13 @@ pub fn copied<T: Copy + Send + Sync>(values: &[T]) -> Vec<T> {
 ///
 /// # Panics
 /// When the lengths differ.
-pub fn copy<T: Number>(from: &[T], to: &mut [T]) {
+pub fn copy<T: Scalar>(from: &[T], to: &mut [T]) {
     assert_eq!(from.len(), to.len(), "vectors of one length");
     parallel::parts_mut(to, CHUNK, &|first, to| to.copy_from_slice(&from[first..][..to.len()]));
 }
 
 /// Gives a vector `n` entries, zeros where it had not as much room; its memory is then written by all threads.
-pub(crate) fn set_length<T: Number>(values: &mut Vec<T>, n: usize) {
+pub(crate) fn set_length<T: Scalar>(values: &mut Vec<T>, n: usize) {
     match values.capacity() < n {
         true => *values = zeros(n),
         false => values.resize(n, T::default()),
@@ -45,7 +45,7 @@ pub(crate) fn set_length<T: Number>(values: &mut Vec<T>, n: usize) {
 }
 
 /// A number in single or double precision.
-pub trait Number: Copy + Default + Send + Sync + AddAssign + Into<f64> + 'static {
+pub trait Scalar: Copy + Default + Send + Sync + AddAssign + Into<f64> + 'static {
     /// The nearest one to `value`.
     fn from_f64(value: f64) -> Self;
 
@@ -53,7 +53,7 @@ pub trait Number: Copy + Default + Send + Sync + AddAssign + Into<f64> + 'static
     fn plus(self, factor: Self, x: Self) -> Self;
 }
 
-impl Number for f64 {
+impl Scalar for f64 {
     fn from_f64(value: f64) -> Self {
         value
     }
@@ -63,7 +63,7 @@ impl Number for f64 {
     }
 }
 
-impl Number for f32 {
+impl Scalar for f32 {
     fn from_f64(value: f64) -> Self {
         value as Self
     }
@@ -77,7 +77,7 @@ impl Number for f32 {
 ///
 /// # Panics
 /// When the lengths differ.
-pub fn dot<T: Number>(a: &[T], b: &[T]) -> f64 {
+pub fn dot<T: Scalar>(a: &[T], b: &[T]) -> f64 {
     assert_eq!(a.len(), b.len(), "vectors of one length");
     if a.len() <= CHUNK {
         return dot_chunk(a, b);
@@ -86,7 +86,7 @@ pub fn dot<T: Number>(a: &[T], b: &[T]) -> f64 {
 }
 
 /// Eight running sums, which the compiler keeps in vector registers.
-fn dot_chunk<T: Number>(a: &[T], b: &[T]) -> f64 {
+fn dot_chunk<T: Scalar>(a: &[T], b: &[T]) -> f64 {
     let mut sums = [0.0; 8];
     let (a_blocks, b_blocks) = (a.chunks_exact(8), b.chunks_exact(8));
     let tail: f64 = a_blocks.remainder().iter().zip(b_blocks.remainder()).map(|(&a, &b)| a.into() * b.into()).sum();
@@ -99,7 +99,7 @@ fn dot_chunk<T: Number>(a: &[T], b: &[T]) -> f64 {
 }
 
 /// Euclidean norm of `a`; not a number when an entry is not finite.
-pub fn norm<T: Number>(a: &[T]) -> f64 {
+pub fn norm<T: Scalar>(a: &[T]) -> f64 {
     let plain = dot(a, a);
     if plain.is_finite() && plain > 1e-290 {
         return plain.sqrt();
@@ -117,7 +117,7 @@ pub fn norm<T: Number>(a: &[T]) -> f64 {
 ///
 /// # Panics
 /// When the lengths differ.
-pub fn products<T: Number>(basis: &[Vec<T>], vector: &[T]) -> Vec<f64> {
+pub fn products<T: Scalar>(basis: &[Vec<T>], vector: &[T]) -> Vec<f64> {
     let partial: Vec<Vec<f64>> = parallel::map(vector.len().div_ceil(CHUNK), 1, |at| {
         let own = at * CHUNK..((at + 1) * CHUNK).min(vector.len());
         basis.iter().map(|v| dot_chunk(&v[own.clone()], &vector[own.clone()])).collect()
@@ -129,7 +129,7 @@ pub fn products<T: Number>(basis: &[Vec<T>], vector: &[T]) -> Vec<f64> {
 ///
 /// # Panics
 /// When the lengths differ.
-pub fn subtract_combination<T: Number>(basis: &[Vec<T>], sizes: &[f64], vector: &mut [T]) {
+pub fn subtract_combination<T: Scalar>(basis: &[Vec<T>], sizes: &[f64], vector: &mut [T]) {
     parallel::parts_mut(vector, CHUNK, &|first, chunk| {
         for (v, size) in basis.iter().zip(sizes) {
             let (factor, v) = (T::from_f64(-size), &v[first..][..chunk.len()]);
@@ -157,7 +157,7 @@ pub fn divide_each(factors: &[f64], x: &mut [f64]) {
 }
 
 /// `x *= factor`.
-pub fn scale_by<T: Number>(factor: f64, x: &mut [T]) {
+pub fn scale_by<T: Scalar>(factor: f64, x: &mut [T]) {
     parallel::parts_mut(x, CHUNK, &|_, x| x.iter_mut().for_each(|x| *x = T::from_f64((*x).into() * factor)));
 }
 
@@ -165,7 +165,7 @@ pub fn scale_by<T: Number>(factor: f64, x: &mut [T]) {
 ///
 /// # Panics
 /// When the lengths differ.
-pub fn scale_to<T: Number>(factor: f64, x: &[T], y: &mut [T]) {
+pub fn scale_to<T: Scalar>(factor: f64, x: &[T], y: &mut [T]) {
     assert_eq!(x.len(), y.len(), "vectors of one length");
     parallel::parts_mut(y, CHUNK, &|first, y| {
         y.iter_mut().zip(&x[first..]).for_each(|(y, &x)| *y = T::from_f64(x.into() * factor));
@@ -176,7 +176,7 @@ pub fn scale_to<T: Number>(factor: f64, x: &[T], y: &mut [T]) {
 ///
 /// # Panics
 /// When the lengths differ.
-pub fn add_scaled<T: Number>(factor: f64, x: &[T], y: &mut [T]) {
+pub fn add_scaled<T: Scalar>(factor: f64, x: &[T], y: &mut [T]) {
     assert_eq!(x.len(), y.len(), "vectors of one length");
     let factor = T::from_f64(factor);
     parallel::parts_mut(y, CHUNK, &|first, y| {

@@ -96,14 +96,14 @@ fn equations_that_are_held_count_for_nothing() {
     let mut sample = contact(7, 0.2, |at| at % 4 != 1);
     let n = sample.bulk.rows;
     let is_tangential = |i: usize| !sample.layout.multiplier[i] && i % 3 != 2;
-    sample.layout.held = (0..n).map(|i| is_tangential(i) && sample.layout.node[i] % 7 == 3).collect();
+    sample.layout.inactive = (0..n).map(|i| is_tangential(i) && sample.layout.node[i] % 7 == 3).collect();
     let contact = System {
         coupling: Some(&sample.coupling),
         coupling_symmetric: false,
         ..System::bulk(&sample.layout, &sample.bulk, Symmetry::PositiveDefinite)
     };
     let (clamped, mut layout) = clamped_box(8);
-    layout.held = (0..clamped.rows).map(|i| i % 5 == 0).collect();
+    layout.inactive = (0..clamped.rows).map(|i| i % 5 == 0).collect();
     let alone = System::bulk(&layout, &clamped, Symmetry::PositiveDefinite);
     let general = System::bulk(&layout, &clamped, Symmetry::General);
     let cases = [
@@ -113,20 +113,20 @@ fn equations_that_are_held_count_for_nothing() {
         (general, 9000, "multifrontal_lu"),
     ];
     for (system, limit, engine) in cases {
-        let held = &system.layout.held;
+        let inactive = &system.layout.inactive;
         let exact: Vec<f64> =
-            held.iter().enumerate().map(|(i, &h)| if h { 0.0 } else { 1.0 + (i % 17) as f64 }).collect();
+            inactive.iter().enumerate().map(|(i, &h)| if h { 0.0 } else { 1.0 + (i % 17) as f64 }).collect();
         let mut rhs = vec![0.0; exact.len()];
         system.mul_vec(&exact, &mut rhs);
         // Numbers at inactive rows are not used.
-        rhs.iter_mut().zip(held).filter(|(_, is_held)| **is_held).for_each(|(b, _)| *b = 1e6);
+        rhs.iter_mut().zip(inactive).filter(|(_, is_inactive)| **is_inactive).for_each(|(b, _)| *b = 1e6);
         for mut solver in [direct(limit), single(limit)] {
             let mut x = vec![3.0; exact.len()];
             let report = solver.solve(&system, &rhs, &mut x).expect("regular without what is held");
             assert_eq!(report.engine, engine);
             let error = x.iter().zip(&exact).map(|(x, e)| (x - e).abs()).fold(0.0, f64::max) / 17.0;
             assert!(error < 1e-7, "{engine}: {error}");
-            assert!(x.iter().zip(held).all(|(x, is_held)| !is_held || *x == 0.0), "{engine}");
+            assert!(x.iter().zip(inactive).all(|(x, is_inactive)| !is_inactive || *x == 0.0), "{engine}");
         }
     }
 }

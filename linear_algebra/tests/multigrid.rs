@@ -221,9 +221,14 @@ fn levels_of_earlier_matrices_are_part_of_the_state() {
 fn the_direct_engine_takes_over_where_it_costs_less() {
     let (bulk, layout) = clamped_box(8);
     let system = System::bulk(&layout, &bulk, Symmetry::PositiveDefinite);
-    let engines = |tolerance: f64, yields: bool| {
-        let settings =
-            MultigridSettings { least: [0; 2], tolerance, loosest: tolerance, yields, ..MultigridSettings::default() };
+    let engines = |tolerance: f64, falls_back: bool| {
+        let settings = MultigridSettings {
+            least: [0; 2],
+            tolerance,
+            loosest: tolerance,
+            falls_back,
+            ..MultigridSettings::default()
+        };
         let mut solver = create(Engine::Multigrid(settings));
         [0, 1].map(|shift| {
             // Loads that are no multiples of each other.
@@ -238,17 +243,17 @@ fn the_direct_engine_takes_over_where_it_costs_less() {
 }
 
 /// A system some of whose equations are held, and the same without them.
-struct Held {
+struct InactiveRows {
     whole: Contact,
     left: Contact,
     equations: Vec<usize>,
 }
 
-fn held(cells: usize, is_held: impl Fn(usize, &Layout) -> bool) -> Held {
+fn inactive_rows(cells: usize, is_inactive: impl Fn(usize, &Layout) -> bool) -> InactiveRows {
     let mut whole = tied(cells, 0.0, |_| true);
     let n = whole.layout.equations();
-    whole.layout.held = (0..n).map(|i| is_held(i, &whole.layout)).collect();
-    let equations: Vec<usize> = (0..n).filter(|&i| !whole.layout.held[i]).collect();
+    whole.layout.inactive = (0..n).map(|i| is_inactive(i, &whole.layout)).collect();
+    let equations: Vec<usize> = (0..n).filter(|&i| !whole.layout.inactive[i]).collect();
     let number = |i: usize| equations.binary_search(&i).ok();
     let matrix = |of: &Csr| {
         let entries = equations.iter().enumerate().flat_map(|(row, &i)| {
@@ -266,10 +271,10 @@ fn held(cells: usize, is_held: impl Fn(usize, &Layout) -> bool) -> Held {
             .iter()
             .map(|vector| equations.iter().map(|&i| vector[i]).collect())
             .collect(),
-        held: Vec::new(),
+        inactive: Vec::new(),
     };
     let left = Contact { bulk: matrix(&whole.bulk), coupling: matrix(&whole.coupling), layout };
-    Held { whole, left, equations }
+    InactiveRows { whole, left, equations }
 }
 
 fn system(of: &Contact) -> System<'_> {
@@ -279,15 +284,15 @@ fn system(of: &Contact) -> System<'_> {
 #[test]
 fn equations_that_are_held_are_none() {
     // Of every seventh node all, and of the nodes of one layer the first one.
-    let is_held = |i: usize, layout: &Layout| {
+    let is_inactive = |i: usize, layout: &Layout| {
         let first = i == 0 || layout.node[i - 1] != layout.node[i];
         layout.node[i].is_multiple_of(7) || first && (162..243).contains(&layout.node[i])
     };
-    let sample = held(8, is_held);
+    let sample = inactive_rows(8, is_inactive);
     let n = sample.whole.layout.equations();
     // Numbers at inactive rows are not used.
     let rhs: Vec<f64> =
-        load(n).iter().enumerate().map(|(i, b)| if sample.whole.layout.held[i] { 1e6 } else { *b }).collect();
+        load(n).iter().enumerate().map(|(i, b)| if sample.whole.layout.inactive[i] { 1e6 } else { *b }).collect();
     let gather = |of: &[f64]| sample.equations.iter().map(|&i| of[i]).collect::<Vec<f64>>();
     let (expected, of_left) = multigrid(&system(&sample.left), &gather(&rhs));
     let (x, report) = multigrid(&system(&sample.whole), &rhs);
@@ -296,13 +301,13 @@ fn equations_that_are_held_are_none() {
     for (a, b) in gather(&x).iter().zip(&expected) {
         assert!((a - b).abs() <= AGREE * b.abs().max(1e-3), "{a} {b}");
     }
-    assert!((0..n).all(|i| !sample.whole.layout.held[i] || x[i] == 0.0));
+    assert!((0..n).all(|i| !sample.whole.layout.inactive[i] || x[i] == 0.0));
 }
 
 #[test]
 fn what_the_direct_engine_takes_over_has_no_held_equations() {
-    let is_held = |i: usize, layout: &Layout| layout.node[i].is_multiple_of(7);
-    let sample = held(5, is_held);
+    let is_inactive = |i: usize, layout: &Layout| layout.node[i].is_multiple_of(7);
+    let sample = inactive_rows(5, is_inactive);
     let rhs = load(sample.whole.layout.equations());
     let solve = |least: usize| {
         let mut x = vec![0.0; rhs.len()];

@@ -4,13 +4,13 @@ use rustc_hash::FxHashMap;
 use zelus_core::diagnostics::{Diagnostic, Place, Result};
 use zelus_core::entities::find_kind;
 use zelus_core::geometry::Shape;
-use zelus_core::io::mdpa::{EntityBlock, MdpaDocument, Nodes, PropertiesBlock, SubModelPart};
+use zelus_core::io::mdpa::{MdpaDocument, MdpaEntities, MdpaNodes, PropertiesBlock, SubModelPart};
 use zelus_core::io::shape_of_geometry;
-use zelus_core::model::Role;
+use zelus_core::model::EntityRole;
 use zelus_core::parameters::Settings;
 
-use super::mend::{is_planar, mend};
 use super::mesh::{Mesh, Plane};
+use super::repair::{is_planar, repair};
 
 /// Beginnings of the names of elements and conditions, as `SmallDisplacementElement` of `SmallDisplacementElement3D8N`.
 #[derive(Debug, Clone)]
@@ -50,10 +50,10 @@ impl Names {
 /// groups sub model parts. Returns notes of repairs and of omitted contents.
 ///
 /// # Errors
-/// Errors of [`mend`].
+/// Errors of [`repair`].
 pub fn finish(mut mesh: Mesh, settings: &Settings, path: &std::path::Path) -> Result<(MdpaDocument, Vec<Diagnostic>)> {
     let place = Place::file(path);
-    let mut said = mend(&mut mesh, &place)?;
+    let mut said = repair(&mut mesh, &place)?;
     let document = document(&mesh, &Names::of(settings)?, &place, &mut said);
     Ok((document, said))
 }
@@ -73,24 +73,24 @@ pub fn document(mesh: &Mesh, names: &Names, place: &Place, said: &mut Vec<Diagno
         }
     }
     let mut out = MdpaDocument { file: place.file.clone(), ..MdpaDocument::default() };
-    out.nodes = Nodes { ids: mesh.node_ids.clone(), coordinates: mesh.points.clone() };
+    out.nodes = MdpaNodes { ids: mesh.node_ids.clone(), coordinates: mesh.points.clone() };
     let mut lost = 0;
     let stems = [names.of_condition(mesh), names.of_element(mesh)];
     for cell in 0..mesh.cells.len() {
         let shape = mesh.cells.shapes[cell];
         let role = match dimension - shape.dim() {
-            0 => Role::Element,
-            1 if grouped[cell] > 0 => Role::Condition,
+            0 => EntityRole::Element,
+            1 if grouped[cell] > 0 => EntityRole::Condition,
             _ => {
                 lost += 1;
                 continue;
             }
         };
-        let is_element = role == Role::Element;
+        let is_element = role == EntityRole::Element;
         let blocks = if is_element { &mut out.elements } else { &mut out.conditions };
         let name = format!("{}{}", stems[usize::from(is_element)], shape.cell().suffix(space));
         let at = blocks.iter().position(|block| block.name == name).unwrap_or_else(|| {
-            blocks.push(EntityBlock { name, nodes_per_entity: shape.nodes(), ..EntityBlock::default() });
+            blocks.push(MdpaEntities { name, nodes_per_entity: shape.nodes(), ..MdpaEntities::default() });
             blocks.len() - 1
         });
         let block = &mut blocks[at];
@@ -136,8 +136,8 @@ pub fn mesh(document: &MdpaDocument) -> Result<Mesh> {
         Mesh { node_ids: document.nodes.ids.clone(), points: document.nodes.coordinates.clone(), ..Mesh::default() };
     let node: FxHashMap<u32, u32> = out.node_ids.iter().enumerate().map(|(at, &id)| (id, at as u32)).collect();
     let kinds = [
-        (Some(Role::Element), &document.elements),
-        (Some(Role::Condition), &document.conditions),
+        (Some(EntityRole::Element), &document.elements),
+        (Some(EntityRole::Condition), &document.conditions),
         (None, &document.geometries),
     ];
     let mut cells: [FxHashMap<u32, u32>; 3] = [const { None }; 3].map(|_: Option<()>| FxHashMap::default());

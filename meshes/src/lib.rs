@@ -1,11 +1,11 @@
 //! Meshes of other programs, read into sub model parts, elements and conditions and written back.
 //!
-//! A format reads its file into a [`mesh::Mesh`], which knows nothing of formats; [`mend`] removes cells that no deck can use and
+//! A format reads its file into a [`mesh::Mesh`], which knows nothing of formats; [`repair`] removes cells that no deck can use and
 //! reorients those that are inside out; [`document`] names elements and conditions. Each format registers itself under the name that
 //! decks give as `"input_type"`; a plugin adds one in the same way, with this crate or without.
 
 pub mod mesh;
-pub mod mend;
+pub mod repair;
 pub mod faces;
 pub mod document;
 pub mod proximity;
@@ -70,6 +70,6 @@ pub fn read(path: &Path, format: &MeshFormatEntry) -> Result<(Mesh, Vec<Diagnost
             (document::mesh(&document)?, said)
         }
     };
-    said.extend(mend::mend(&mut mesh, &Place::file(path))?);
+    said.extend(repair::repair(&mut mesh, &Place::file(path))?);
     Ok((mesh, said))
 }

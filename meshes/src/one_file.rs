@@ -7,7 +7,7 @@ use zelus_core::State;
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::io::results::read_pvd;
 use zelus_core::io::{Mark, remove_series};
-use zelus_core::processes::{OutputFormat, OutputFormatEntry, Shown};
+use zelus_core::processes::{OutputFormat, OutputFormatEntry, OutputFrame};
 use zelus_core::register;
 use zelus_core::registry::require;
 
@@ -24,7 +24,7 @@ struct OneFile {
 }
 
 impl OutputFormat for OneFile {
-    fn write(&mut self, shown: &Shown<'_>) -> Result<()> {
+    fn write(&mut self, shown: &OutputFrame<'_>) -> Result<()> {
         self.steps.write(shown)
     }
 

@@ -5,7 +5,7 @@ use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use zelus::Error;
 use zelus::core::model::{
-    EntityTable, Fields, Flags, ModelPart, Named, PropertyValue, Role, ScalarVariable, SubPart, VariableEntry,
+    EntityRole, EntityTable, Fields, Flags, ModelPart, Named, PropertyValue, ScalarVariable, SubPart, VariableEntry,
     VariableKind, flags, named, variables,
 };
 
@@ -426,7 +426,7 @@ impl Session {
 
     /// A variable at the Gauss points of an element or condition, one row a point; `None` when it does not know it.
     fn gauss(&self, path: &str, kind: &str, at: u32, name: &str) -> PyResult<Option<Buffer>> {
-        let role = if kind == "elements" { Role::Element } else { Role::Condition };
+        let role = if kind == "elements" { EntityRole::Element } else { EntityRole::Condition };
         self.with(|lent| {
             let part = root(lent, path)?;
             let system = lent.system().ok_or_else(|| PyRuntimeError::new_err("elements are not ready here"))?;

@@ -12,9 +12,9 @@ use zelus::core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus::core::registry;
 
 use crate::access::read_only;
+use crate::errors;
 use crate::plain::plain;
 use crate::session::Session;
-use crate::words;
 
 /// A process of the registry that Python calls itself.
 #[pyclass(frozen, module = "zelus._zelus")]
@@ -80,7 +80,7 @@ impl Builtin {
 
 /// The error as JSON, for Python to make an exception of.
 fn failed(error: &zelus::Error) -> PyErr {
-    PyRuntimeError::new_err(words::error(error))
+    PyRuntimeError::new_err(errors::error(error))
 }
 
 /// A function of space and time as decks write it.

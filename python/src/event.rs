@@ -2,19 +2,19 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
-use zelus::core::analysis::Point;
+use zelus::core::analysis::LoopPoint;
 use zelus::core::diagnostics::Diagnostic;
 use zelus::core::strategies::{Plan, StepRecord};
 
 use crate::buffer::Buffer;
-use crate::words;
+use crate::errors;
 
 /// One event; those that wait for an answer say so.
 pub(crate) enum Event {
     /// A point of the loop; waits.
-    At(Point),
+    At(LoopPoint),
     /// The work at this point of the loop is done; waits.
-    Acted(Point),
+    Acted(LoopPoint),
     /// An entry of the deck's lists of processes, as JSON, and whether the registry knows it; waits.
     Make(String, bool),
     /// A method of the process of that number is to be called; waits.
@@ -40,15 +40,15 @@ pub(crate) enum Event {
 }
 
 /// The word for a point.
-fn word(point: Point) -> &'static str {
+fn word(point: LoopPoint) -> &'static str {
     match point {
-        Point::Read => "read",
-        Point::Ready => "ready",
-        Point::BeforeLoop => "before_loop",
-        Point::BeginStep => "begin_step",
-        Point::EndStep => "end_step",
-        Point::Output => "output",
-        Point::Finalize => "finalize",
+        LoopPoint::Read => "read",
+        LoopPoint::Ready => "ready",
+        LoopPoint::BeforeLoop => "before_loop",
+        LoopPoint::BeginStep => "begin_step",
+        LoopPoint::EndStep => "end_step",
+        LoopPoint::Output => "output",
+        LoopPoint::Finalize => "finalize",
     }
 }
 
@@ -74,7 +74,7 @@ impl Event {
                 ("end", record.step, record.time, record.converged, record.iterations.len()).into_pyobject(py)
             }
             Self::Note(text) => ("note", text).into_pyobject(py),
-            Self::Warning(warning) => ("warning", words::problem(&warning).to_string()).into_pyobject(py),
+            Self::Warning(warning) => ("warning", errors::problem(&warning).to_string()).into_pyobject(py),
             Self::Idle(Ok(more)) => ("idle", more, None::<String>).into_pyobject(py),
             Self::Idle(Err(error)) => ("idle", false, Some(error)).into_pyobject(py),
         }

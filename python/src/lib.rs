@@ -10,7 +10,7 @@ mod plain;
 mod process;
 mod residual;
 mod session;
-mod words;
+mod errors;
 mod worker;
 
 use pyo3::prelude::*;

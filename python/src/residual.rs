@@ -9,9 +9,9 @@ use zelus::Result;
 use zelus::core::assembly::{NONE, System};
 use zelus::core::diagnostics::{Diagnostic, Report};
 use zelus::core::entities::{
-    Coupling, EntityBlock, EntityError, Interaction, LocalSystems, LocalUnknown, StepView, Tangent, Want,
+    Coupling, EntityBlock, EntityError, Interaction, LocalSystems, LocalUnknown, Request, StepView, Tangent,
 };
-use zelus::core::model::{EntityKind, Model, ModelPart, Named, Role, ScalarVariable, VariableKind, named};
+use zelus::core::model::{EntityKind, EntityRole, Model, ModelPart, Named, ScalarVariable, VariableKind, named};
 use zelus::core::registry::Entry;
 
 use crate::event::Event;
@@ -28,7 +28,7 @@ pub(crate) struct Description {
     symmetric: bool,
 }
 
-static KIND: EntityKind = EntityKind::new(Role::Condition, Entry::new("Python", file!(), line!()));
+static KIND: EntityKind = EntityKind::new(EntityRole::Condition, Entry::new("Python", file!(), line!()));
 
 /// The blocks of one function, one for each number of nodes.
 pub(crate) struct PythonResidual {
@@ -56,7 +56,7 @@ impl PythonResidual {
             line.ask(Event::Block(number, at, ids.clone(), nodes.clone(), width), model, None)?;
             let local = (0..width).flat_map(|node| unknowns.iter().map(move |&variable| (node, variable)));
             let local = local.map(|(node, variable)| LocalUnknown::of_node(node as u8, variable)).collect();
-            let tangent = if own.symmetric { Tangent::Symmetric } else { Tangent::General };
+            let tangent = if own.symmetric { Tangent::Symmetric } else { Tangent::Unsymmetric };
             let line = Arc::clone(line);
             blocks.push(Block {
                 number,
@@ -225,11 +225,11 @@ impl EntityBlock for Block {
         &self,
         view: &StepView<'_>,
         range: Range<usize>,
-        want: Want,
+        request: Request,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         let values = self.gather(view);
-        let both = want == Want::Both;
+        let both = request == Request::Both;
         let mut cache = self.cache.lock().unwrap_or_else(PoisonError::into_inner);
         let serves = |known: &Evaluated| {
             known.values == values && known.time == view.info.time && (!both || !known.tangent.is_empty())

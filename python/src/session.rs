@@ -12,11 +12,11 @@ use pyo3::types::{PyDict, PyTuple};
 use zelus::core::model::Model;
 use zelus::{RunOptions, Simulation};
 
+use crate::errors;
 use crate::event::Event;
 use crate::line::{Answer, Lent, Line, Root, Shelf, shelf};
 use crate::outcome::outcome;
 use crate::plain::plain;
-use crate::words;
 use crate::worker::{Asking, Command, Last, work};
 
 /// A run in a thread of its own. It computes after a command or an answer; [`Session::wait`] returns its events. While it waits the
@@ -50,7 +50,7 @@ impl Session {
             Some(deck) => Simulation::of_value(&plain(&deck)?, &path, &options),
             None => Simulation::open(&path, &options),
         };
-        let mut simulation = opened.map_err(|error| PyRuntimeError::new_err(words::error(&error)))?;
+        let mut simulation = opened.map_err(|error| PyRuntimeError::new_err(errors::error(&error)))?;
         let (commands, heard) = channel();
         let (answers, answered) = channel();
         let (events, told) = channel();

@@ -3,7 +3,7 @@
 use std::sync::mpsc::Receiver;
 use std::sync::{Arc, Mutex};
 
-use zelus::core::analysis::{Driver, Point};
+use zelus::core::analysis::{Driver, LoopPoint};
 use zelus::core::assembly::System;
 use zelus::core::diagnostics::Diagnostic;
 use zelus::core::io::results::Dataset;
@@ -14,10 +14,10 @@ use zelus::core::registry;
 use zelus::core::strategies::{IterationRecord, Plan, StepRecord};
 use zelus::{Error, Monitor, Result, Simulation};
 
+use crate::errors;
 use crate::event::Event;
 use crate::line::{Answer, Line};
 use crate::process::PythonProcess;
-use crate::words;
 
 /// Commands from Python.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -39,7 +39,7 @@ pub(crate) fn work(mut simulation: Simulation, commands: &Receiver<Command>, lin
             Command::Step => simulation.step(&mut watch),
             Command::Finish => simulation.finish().map(|()| false),
         };
-        let event = Event::Idle(done.map_err(|error| words::error(&error)));
+        let event = Event::Idle(done.map_err(|error| errors::error(&error)));
         if let Some(part) = simulation.part() {
             line.solves_for(&part.name);
         }
@@ -104,13 +104,13 @@ impl Driver for Asking {
 
     fn at(
         &mut self,
-        point: Point,
+        point: LoopPoint,
         root: &str,
         model: &mut Model,
         system: &System,
         act: &mut dyn FnMut(&mut Model) -> Result<()>,
     ) -> Result<()> {
-        if point == Point::Finalize {
+        if point == LoopPoint::Finalize {
             *self.last.lock().map_err(|_| lost())? = Some(usual_results(model.root(root)?, system));
         }
         self.line.solves_for(root);

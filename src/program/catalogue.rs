@@ -3,7 +3,7 @@
 use zelus_core::Result;
 use zelus_core::diagnostics::{Diagnostic, did_you_mean};
 use zelus_core::entities::find_kind;
-use zelus_core::model::{Role, VariableKind, variables};
+use zelus_core::model::{EntityRole, VariableKind, variables};
 use zelus_core::registry::{self, Entry, Kind};
 
 use super::example::example;
@@ -59,7 +59,7 @@ pub(super) fn describe(name: &str) -> Result<()> {
         if !entry.aliases.is_empty() {
             say(&format!("  also called {}", entry.aliases.join(", ")));
         }
-        let shape = [Role::Element, Role::Condition].into_iter().find(|role| role.word() == *kind);
+        let shape = [EntityRole::Element, EntityRole::Condition].into_iter().find(|role| role.word() == *kind);
         if let Some(of) = shape.and_then(|role| find_kind(role, name))
             && let Some(cell) = of.cell
         {

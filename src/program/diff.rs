@@ -13,7 +13,7 @@ use super::say::say;
 
 /// The command line of `zelus diff`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct DiffArguments {
     /// A folder with results (.pvd, .vtu, .json of json_output_process), one such file, or the report of a run.
     first: PathBuf,
     /// Results to compare with the first.
@@ -30,7 +30,7 @@ pub(super) struct Arguments {
 ///
 /// # Errors
 /// Results that cannot be read.
-pub(super) fn run(arguments: &Arguments) -> Result<ExitCode> {
+pub(super) fn run(arguments: &DiffArguments) -> Result<ExitCode> {
     let (first, second) = (find(&arguments.first)?, find(&arguments.second)?);
     let mut comparison =
         Comparison { tolerance: arguments.tolerance, absolute: arguments.absolute, ..Comparison::default() };

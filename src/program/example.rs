@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use zelus_core::Result;
 use zelus_core::entities::find_kind;
-use zelus_core::model::Role;
+use zelus_core::model::EntityRole;
 use zelus_core::parameters::Defaults;
 use zelus_core::registry::Entry;
 
@@ -30,11 +30,11 @@ pub(super) fn example(kind: &str, entry: &Entry) -> Result<Option<String>> {
         text => Defaults::parse(entry.name, text)?.example().map(zelus_core::parameters::Node::to_json),
     };
     let name = entry.name;
-    let role = [Role::Element, Role::Condition].into_iter().find(|role| role.word() == kind);
+    let role = [EntityRole::Element, EntityRole::Condition].into_iter().find(|role| role.word() == kind);
     if let Some(role) = role {
         let Some(nodes) = find_kind(role, name).map(|kind| kind.nodes()) else { return Ok(None) };
         let numbers: Vec<String> = (1..=nodes).map(|node| node.to_string()).collect();
-        let block = if role == Role::Element { "Elements" } else { "Conditions" };
+        let block = if role == EntityRole::Element { "Elements" } else { "Conditions" };
         return Ok(Some(format!("Begin {block} {name}\n    1 1 {}\nEnd {block}", numbers.join(" "))));
     }
     let settings = settings.unwrap_or_else(|| json!({}));

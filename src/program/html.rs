@@ -22,7 +22,7 @@ const MARK: &str = "<!doctype html>\n<!-- zelus report -->";
 
 /// The command line of `zelus report`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct ReportArguments {
     /// The report of a run (`zelus run DECK --report run.json`).
     report: PathBuf,
     /// The page.
@@ -34,8 +34,8 @@ pub(super) struct Arguments {
 ///
 /// # Errors
 /// A file that is no report, results that cannot be read, an output that cannot be written or would replace something else.
-pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let Arguments { report: path, output } = arguments;
+pub(super) fn run(arguments: &ReportArguments) -> Result<()> {
+    let ReportArguments { report: path, output } = arguments;
     check_output("the page", output, &[path], Mark::Begins(&[MARK]))?;
     let report = read(path)?;
     let (views, missing) = views(path)?;

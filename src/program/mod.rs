@@ -50,7 +50,7 @@ use terminal::{Level, Terminal};
     (what converged is written), 4 system or solver failure, 5 stopped by a signal after a step and saved \
     (go on with --resume)."
 )]
-struct Arguments {
+struct CommandLine {
     #[command(subcommand)]
     command: Command,
 }
@@ -60,7 +60,7 @@ enum Command {
     /// Run a deck.
     Run(run_arguments::RunArguments),
     /// Check everything about a deck that can be known without solving.
-    Check {
+    ConvergenceCheck {
         /// The deck, e.g. ProjectParameters.json.
         file: PathBuf,
         /// Use the defaults of this program where the deck gives none, e.g. kratos.
@@ -78,13 +78,13 @@ enum Command {
     /// Read a mesh and write it in the format of its new name's ending: .mdpa, .msh, .inp, .vtu.
     Convert(meshes::Convert),
     /// Write a commented deck to start from: parts, materials, supports and pairs in contact, of a mesh.
-    New(starter::Arguments),
+    New(starter::NewArguments),
     /// Cut the mesh of a deck for several ranks, and print the share, neighbours and traffic of each.
-    Partition(partition::Arguments),
+    Partition(partition::PartitionArguments),
     /// Compare two result sets by node and field; exit code 0 where they are equal, 1 where not.
-    Diff(diff::Arguments),
+    Diff(diff::DiffArguments),
     /// Write a page about a run: convergence, contact, forces, energies, times, warnings, and the mesh to turn and zoom.
-    Report(html::Arguments),
+    Report(html::ReportArguments),
     /// List the registered names, of all kinds or of one.
     List {
         /// A kind, e.g. process or condition.
@@ -112,7 +112,7 @@ enum Command {
 
 /// Runs the program with the arguments of the process.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    let arguments = CommandLine::parse();
     let ranks = match communication::join() {
         Ok(ranks) => ranks,
         Err(error) => {
@@ -145,7 +145,7 @@ enum Format {
 fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
     match command {
         Command::Run(arguments) => run::run(&arguments, ranks, ran),
-        Command::Check { file, like, set, format } => {
+        Command::ConvergenceCheck { file, like, set, format } => {
             let options = RunOptions { like, ranks: ranks.clone(), changes: changes(&set)?, ..RunOptions::default() };
             if format == Format::Json && ranks.is_root() {
                 let mut problems = Problems::default();
@@ -183,14 +183,14 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
         }
         Command::Completions { shell } => {
             let mut text = Vec::new();
-            clap_complete::generate(shell, &mut Arguments::command(), "zelus", &mut text);
+            clap_complete::generate(shell, &mut CommandLine::command(), "zelus", &mut text);
             say(String::from_utf8_lossy(&text).trim_end());
             Ok(ExitCode::SUCCESS)
         }
         Command::Manual => {
             let mut text = Vec::new();
             let failed = |error: std::io::Error| Error::System(format!("manual: {error}"));
-            clap_mangen::Man::new(Arguments::command()).render(&mut text).map_err(failed)?;
+            clap_mangen::Man::new(CommandLine::command()).render(&mut text).map_err(failed)?;
             say(String::from_utf8_lossy(&text).trim_end());
             Ok(ExitCode::SUCCESS)
         }

@@ -8,7 +8,7 @@ use zelus_core::analysis::{DeckMesh, read_deck_mesh};
 use zelus_core::io::results::{Cells, Column, Dataset, write_piece};
 use zelus_core::io::{Mark, replace_own_file};
 use zelus_core::model::ModelPart;
-use zelus_core::partition::{Counts, Partition, RankCounts, Repeats, Traffic, partition};
+use zelus_core::partition::{Partition, PartitionCounts, RankCounts, Repeats, Traffic, partition};
 use zelus_core::{Error, Result};
 
 use super::report::check_output;
@@ -19,7 +19,7 @@ const LINES: usize = 32;
 
 /// The command line of `zelus partition`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct PartitionArguments {
     /// The deck, e.g. ProjectParameters.json.
     file: PathBuf,
     /// Number of ranks.
@@ -46,7 +46,7 @@ pub(super) struct Arguments {
 const MARK: Mark = Mark::Holds("\"repeats\"");
 
 /// Cuts the mesh, prints the table and writes the files asked for.
-pub(super) fn run(arguments: &Arguments) -> Result<()> {
+pub(super) fn run(arguments: &PartitionArguments) -> Result<()> {
     for (what, path, mark) in
         [("partition", &arguments.json, MARK), ("picture", &arguments.vtu, Mark::Holds("<VTKFile"))]
     {
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     }
     let DeckMesh { part, surfaces, common } = read_deck_mesh(&arguments.file)?;
     let cut = partition(&part, &surfaces, arguments.ranks)?;
-    let counts = Counts::new(&part, &cut, &common);
+    let counts = PartitionCounts::new(&part, &cut, &common);
     let repeats = Repeats { newton: arguments.newton, krylov: arguments.krylov };
     say(explain(&part, &counts, repeats, arguments.all).trim_end());
     if let Some(path) = &arguments.json {
@@ -72,9 +72,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
 }
 
 /// A column of the table: its head and its number for a rank.
-type Shown = (&'static str, fn(&RankCounts, Traffic) -> usize);
+type OutputFrame = (&'static str, fn(&RankCounts, Traffic) -> usize);
 
-const COLUMNS: [Shown; 11] = [
+const COLUMNS: [OutputFrame; 11] = [
     ("elements", |rank, _| rank.elements),
     ("nodes", |rank, _| rank.nodes),
     ("held", |rank, _| rank.held),
@@ -88,7 +88,7 @@ const COLUMNS: [Shown; 11] = [
     ("bytes", |_, traffic| traffic.bytes),
 ];
 
-fn explain(part: &ModelPart, counts: &Counts, repeats: Repeats, all: bool) -> String {
+fn explain(part: &ModelPart, counts: &PartitionCounts, repeats: Repeats, all: bool) -> String {
     use std::fmt::Write as _;
     let ranks = counts.ranks.len();
     let mut text = format!(
@@ -140,7 +140,7 @@ fn explain(part: &ModelPart, counts: &Counts, repeats: Repeats, all: bool) -> St
     text
 }
 
-fn document(part: &ModelPart, cut: &Partition, counts: &Counts, repeats: Repeats) -> serde_json::Value {
+fn document(part: &ModelPart, cut: &Partition, counts: &PartitionCounts, repeats: Repeats) -> serde_json::Value {
     let traffic: Vec<Traffic> = (0..counts.ranks.len()).map(|rank| counts.traffic(rank, repeats)).collect();
     json!({
         "ranks": cut.ranks,

@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &RunArguments, ranks: &Ranks, ran: &mut bool) -> Re
     let written = report.map_or(Ok(()), |report| report.write(&run, result.as_ref().err()));
     let ended = result?;
     written?;
-    if let Ended::Stopped { saved, time } = &ended {
+    if let RunEnd::Stopped { saved, time } = &ended {
         let saved = saved.display();
         let again = words(arguments);
         say(&format!("stopped at time {time}, and saved in {saved}: `zelus run {again} --resume` continues it"));
@@ -99,12 +99,12 @@ fn refuse_script(file: &Path) -> Result<()> {
 }
 
 /// How a run came to its end.
-enum Ended {
+enum RunEnd {
     Done,
     Stopped { saved: PathBuf, time: f64 },
 }
 
-impl Ended {
+impl RunEnd {
     fn exit_code(&self) -> u8 {
         if matches!(self, Self::Done) { 0 } else { 5 }
     }
@@ -115,7 +115,7 @@ impl Ended {
 }
 
 /// Makes the steps of a deck, until a signal asks to stop after the one under way.
-fn drive(simulation: &mut Simulation, monitor: &mut dyn Monitor, resume: bool, stop: &Stop) -> Result<Ended> {
+fn drive(simulation: &mut Simulation, monitor: &mut dyn Monitor, resume: bool, stop: &Stop) -> Result<RunEnd> {
     if resume {
         match simulation.resume(monitor)? {
             Some(saved) => monitor.note(&format!("restart from {}", saved.display())),
@@ -125,12 +125,12 @@ fn drive(simulation: &mut Simulation, monitor: &mut dyn Monitor, resume: bool, s
     while simulation.step(monitor)? {
         if simulation.model().ranks.any(stop.is_asked()) {
             let time = simulation.time().unwrap_or_default();
-            return Ok(Ended::Stopped { saved: simulation.suspend()?, time });
+            return Ok(RunEnd::Stopped { saved: simulation.suspend()?, time });
         }
         if let Some(saved) = simulation.autosave()? {
             monitor.note(&format!("saved in {}, in case the run is killed: `--resume` continues it", saved.display()));
         }
     }
     simulation.remove_autosave();
-    Ok(Ended::Done)
+    Ok(RunEnd::Done)
 }

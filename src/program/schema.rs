@@ -212,9 +212,12 @@ fn of_node(node: &Node, path: &str, defaults: &Defaults) -> Value {
         }
     };
     if let Some(entry) = defaults.entries().iter().find(|entry| entry.path == path) {
-        let idle = entry.without_effect.as_ref().map(|why| format!("Without effect: {why}."));
-        let words: Vec<&str> =
-            [&*entry.description].into_iter().chain(idle.as_deref()).filter(|text| !text.is_empty()).collect();
+        let without_effect = entry.without_effect.as_ref().map(|why| format!("Without effect: {why}."));
+        let words: Vec<&str> = [&*entry.description]
+            .into_iter()
+            .chain(without_effect.as_deref())
+            .filter(|text| !text.is_empty())
+            .collect();
         if !words.is_empty() {
             schema["description"] = json!(words.join(" "));
         }
@@ -227,7 +230,7 @@ fn of_node(node: &Node, path: &str, defaults: &Defaults) -> Value {
         if !entry.choices.is_empty() {
             schema["enum"] = json!(entry.choices);
         }
-        if idle.is_some() {
+        if without_effect.is_some() {
             schema["deprecated"] = json!(true);
         }
     }

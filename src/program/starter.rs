@@ -9,13 +9,13 @@ use std::path::{Path, PathBuf};
 
 use zelus_core::diagnostics::{Diagnostic, Place};
 use zelus_core::entities::find_kind;
-use zelus_core::io::mdpa::{self, EntityBlock, MdpaDocument};
+use zelus_core::io::mdpa::{self, MdpaDocument, MdpaEntities};
 use zelus_core::io::replace_own_file;
-use zelus_core::model::Role;
+use zelus_core::model::EntityRole;
 use zelus_core::{Error, Result};
 use zelus_meshes::document::{Names, document};
-use zelus_meshes::mend::is_planar;
 use zelus_meshes::mesh::{LoadKind, Material, Mesh, Plane};
+use zelus_meshes::repair::is_planar;
 use zelus_meshes::{format, proximity, read};
 
 use super::meshes::counts;
@@ -29,7 +29,7 @@ const LOCKS: f64 = 0.49;
 
 /// The command line of `zelus new`.
 #[derive(Debug, clap::Args)]
-pub(super) struct Arguments {
+pub(super) struct NewArguments {
     /// The mesh, e.g. part.msh, part.inp, part.vtu or part.mdpa.
     #[arg(long, value_name = "MESH")]
     from: PathBuf,
@@ -45,7 +45,7 @@ pub(super) struct Arguments {
 }
 
 /// Reads the mesh and writes deck, materials and mesh file.
-pub(super) fn run(arguments: &Arguments) -> Result<()> {
+pub(super) fn run(arguments: &NewArguments) -> Result<()> {
     let from = &arguments.from;
     let source = format(from, arguments.format.as_deref())?;
     if !from.is_file() {
@@ -108,7 +108,7 @@ fn take_mixed_elements(mesh: &Mesh, document: &mut MdpaDocument) -> bool {
     let mut taken = false;
     for block in &mut document.elements {
         let mixed = block.name.strip_prefix(PLAIN).map(|suffix| format!("{MIXED}{suffix}"));
-        if let Some(mixed) = mixed.filter(|name| find_kind(Role::Element, name).is_some()) {
+        if let Some(mixed) = mixed.filter(|name| find_kind(EntityRole::Element, name).is_some()) {
             (block.name, taken) = (mixed, true);
         }
     }
@@ -120,7 +120,7 @@ fn add_point_loads(mesh: &Mesh, document: &mut MdpaDocument) {
     let space = if is_planar(mesh) && mesh.dimension() < 3 { 2 } else { 3 };
     let mut next = document.conditions.iter().flat_map(|block| &block.ids).max().map_or(1, |id| id + 1);
     let mut block =
-        EntityBlock { name: format!("PointLoadCondition{space}D1N"), nodes_per_entity: 1, ..EntityBlock::default() };
+        MdpaEntities { name: format!("PointLoadCondition{space}D1N"), nodes_per_entity: 1, ..MdpaEntities::default() };
     for load in mesh.loads.iter().filter(|load| matches!(load.kind, LoadKind::Force(_))) {
         let Some(part) = document.sub_model_parts.iter_mut().find(|part| part.name == load.group) else { continue };
         for &node in &part.nodes {

@@ -39,7 +39,7 @@ struct Sweep<'a> {
 }
 
 /// How a row ended.
-struct Ended {
+struct RowEnd {
     row: usize,
     code: u8,
     report: Option<RunReport>,
@@ -80,7 +80,7 @@ pub(super) fn run(arguments: &RunArguments, table: &Path, ranks: &Ranks) -> Resu
         sweep.threads,
         plural(sweep.threads)
     ));
-    let (next, done) = (Mutex::new(0..rows), Mutex::new(Vec::<Ended>::new()));
+    let (next, done) = (Mutex::new(0..rows), Mutex::new(Vec::<RowEnd>::new()));
     let work = || -> Result<()> {
         loop {
             let row = next.lock().expect("no thread panics").next();
@@ -156,10 +156,10 @@ impl Sweep<'_> {
     }
 
     /// Runs a row in a process of its own: the end of one does not end the others.
-    fn row(&self, row: usize) -> Result<Ended> {
+    fn row(&self, row: usize) -> Result<RowEnd> {
         let RunArguments { file, like, resume, .. } = self.arguments;
         if *resume && let Some(report) = self.done_before(row) {
-            return Ok(Ended { row, code: 0, report: Some(report), said: String::new(), kept: true });
+            return Ok(RowEnd { row, code: 0, report: Some(report), said: String::new(), kept: true });
         }
         let folder = self.folder_of(row);
         made_folder(&folder)?;
@@ -185,11 +185,11 @@ impl Sweep<'_> {
         let output = command.stdin(Stdio::null()).output().map_err(failed)?;
         let code = output.status.code().and_then(|code| u8::try_from(code).ok()).unwrap_or(4);
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        Ok(Ended { row, code, report: read_report(&folder), said, kept: false })
+        Ok(RowEnd { row, code, report: read_report(&folder), said, kept: false })
     }
 
     /// The line of a row that has ended.
-    fn line(&self, ended: &Ended) -> String {
+    fn line(&self, ended: &RowEnd) -> String {
         let head = format!("row {} of {}", ended.row + 1, self.table.rows.len());
         match (&ended.report, ended.kept) {
             (Some(report), true) => {
@@ -208,7 +208,7 @@ impl Sweep<'_> {
     }
 
     /// All that is known of each row.
-    fn results(&self, done: &[Ended]) -> Table {
+    fn results(&self, done: &[RowEnd]) -> Table {
         let mut columns = vec![
             Column::new("row", |ended| (ended.row + 1).to_string()),
             Column::new("exit_code", |ended| ended.code.to_string()),
@@ -234,7 +234,7 @@ impl Sweep<'_> {
     }
 
     /// Columns that fit on a terminal: keys by their last word, the main results first.
-    fn summary(&self, done: &[Ended]) -> Table {
+    fn summary(&self, done: &[RowEnd]) -> Table {
         let short = |head: &String| {
             let words: Vec<&str> = head.split('.').collect();
             let from = words.iter().rposition(|word| word.parse::<usize>().is_err()).unwrap_or(0);
@@ -271,11 +271,11 @@ impl Sweep<'_> {
 /// A column of a table of runs.
 struct Column<'a> {
     head: String,
-    cell: Box<dyn Fn(&Ended) -> String + 'a>,
+    cell: Box<dyn Fn(&RowEnd) -> String + 'a>,
 }
 
 impl<'a> Column<'a> {
-    fn new(head: impl Into<String>, cell: impl Fn(&Ended) -> String + 'a) -> Self {
+    fn new(head: impl Into<String>, cell: impl Fn(&RowEnd) -> String + 'a) -> Self {
         Self { head: head.into(), cell: Box::new(cell) }
     }
 
@@ -285,7 +285,7 @@ impl<'a> Column<'a> {
     }
 }
 
-fn table(columns: &[Column<'_>], done: &[Ended]) -> Table {
+fn table(columns: &[Column<'_>], done: &[RowEnd]) -> Table {
     Table {
         heads: columns.iter().map(|column| column.head.clone()).collect(),
         rows: done.iter().map(|ended| columns.iter().map(|column| (column.cell)(ended)).collect()).collect(),
@@ -293,16 +293,16 @@ fn table(columns: &[Column<'_>], done: &[Ended]) -> Table {
 }
 
 /// Names of the largest results of all runs.
-fn largest(done: &[Ended]) -> BTreeSet<String> {
+fn largest(done: &[RowEnd]) -> BTreeSet<String> {
     done.iter().filter_map(|row| row.report.as_ref()).flat_map(|report| report.largest.keys().cloned()).collect()
 }
 
 /// Names of the pairs of all runs.
-fn pairs(done: &[Ended]) -> BTreeSet<String> {
-    done.iter().flat_map(Ended::forces).map(|(pair, _)| pair).collect()
+fn pairs(done: &[RowEnd]) -> BTreeSet<String> {
+    done.iter().flat_map(RowEnd::forces).map(|(pair, _)| pair).collect()
 }
 
-impl Ended {
+impl RowEnd {
     /// Forces on the slave side of each pair, at the end of the last step that converged.
     fn forces(&self) -> Vec<(String, [f64; 3])> {
         let steps = self.report.iter().flat_map(|report| report.steps.iter().rev());

@@ -12,7 +12,7 @@ const DIRECT: &str = "sparse_lu";
 const AGREE: f64 = 1e-9;
 
 /// Outcome of a run of a case.
-struct Run {
+struct CondensedRun {
     code: Option<i32>,
     said: String,
     /// Engines of all linear solves.
@@ -21,7 +21,7 @@ struct Run {
     fields: BTreeMap<String, Vec<f64>>,
 }
 
-impl Run {
+impl CondensedRun {
     /// Runs a case of `tests/cases` with an engine and a change of its deck.
     fn of(case: &str, engine: &str, change: impl FnOnce(&mut Value)) -> Self {
         let folder = root().join("tests/cases").join(case);
@@ -128,8 +128,8 @@ fn condensed_systems_have_the_answer_of_the_direct_engine() {
         "self_contact/slit_components",
         "self_contact/slit_tetrahedra",
     ] {
-        let direct = Run::converged(case, DIRECT, as_it_is);
-        let condensed = Run::converged(case, "gmres", as_it_is);
+        let direct = CondensedRun::converged(case, DIRECT, as_it_is);
+        let condensed = CondensedRun::converged(case, "gmres", as_it_is);
         assert!(condensed.is_solved_by("gmres, condensed"), "{case}: {:?}", condensed.engines);
         let (difference, field) = direct.difference(&condensed);
         assert!(difference < AGREE, "{case}: {field} differs by {difference:e}");
@@ -164,8 +164,8 @@ fn components_and_perturbed_lagrangian_condense_too() {
                 }
             }
         };
-        let direct = Run::converged(case, DIRECT, change);
-        let condensed = Run::converged(case, "bicgstab", change);
+        let direct = CondensedRun::converged(case, DIRECT, change);
+        let condensed = CondensedRun::converged(case, "bicgstab", change);
         assert!(condensed.is_solved_by("gmres, condensed"), "{formulation}: {:?}", condensed.engines);
         let (difference, field) = direct.difference(&condensed);
         assert!(difference < AGREE, "{formulation}: {field} differs by {difference:e}");
@@ -192,8 +192,8 @@ fn multigrid_has_the_answer_of_the_direct_engine() {
         "mesh_tying/hexahedra",
         "self_contact/slit_components",
     ] {
-        let direct = Run::converged(case, DIRECT, as_it_is);
-        let multigrid = Run::converged(case, "amgcl", |deck| {
+        let direct = CondensedRun::converged(case, DIRECT, as_it_is);
+        let multigrid = CondensedRun::converged(case, "amgcl", |deck| {
             deck["solver_settings"]["linear_solver_settings"]["direct_below"] = json!(0);
         });
         assert!(multigrid.is_solved_by("multigrid"), "{case}: {:?}", multigrid.engines);
@@ -207,14 +207,14 @@ fn multigrid_has_the_answer_of_the_direct_engine() {
 fn a_run_that_does_not_fit_takes_multigrid_or_ends_before_it_starts() {
     let case = "contact_3d/friction_stick";
     let limited = |gigabytes: f64| {
-        Run::of(case, DIRECT, move |deck| {
+        CondensedRun::of(case, DIRECT, move |deck| {
             deck["solver_settings"]["linear_solver_settings"]["memory_limit"] = json!(gigabytes);
         })
     };
     let run = limited(0.0016);
     assert!(run.said.contains("warning[memory] ProjectParameters.json:"), "{}", run.said);
     assert!(run.is_solved_by("multigrid"), "{:?}", run.engines);
-    let (difference, field) = Run::converged(case, DIRECT, as_it_is).difference(&run);
+    let (difference, field) = CondensedRun::converged(case, DIRECT, as_it_is).difference(&run);
     assert!(difference < AGREE, "{field} differs by {difference:e}");
 
     let refused = limited(0.001);
@@ -226,16 +226,17 @@ fn a_run_that_does_not_fit_takes_multigrid_or_ends_before_it_starts() {
 /// Gradients serve while nothing touches, GMRES stands in where contact leaves no symmetry.
 #[test]
 fn conjugate_gradients_go_as_far_as_symmetry() {
-    let run = Run::converged("contact_2d/closing_gap", "cg", as_it_is);
+    let run = CondensedRun::converged("contact_2d/closing_gap", "cg", as_it_is);
     assert!(run.engines.contains(&"gmres, condensed".to_owned()), "{:?}", run.engines);
-    let (difference, field) = Run::converged("contact_2d/closing_gap", DIRECT, as_it_is).difference(&run);
+    let (difference, field) = CondensedRun::converged("contact_2d/closing_gap", DIRECT, as_it_is).difference(&run);
     assert!(difference < AGREE, "{field} differs by {difference:e}");
 }
 
 #[test]
 fn without_condensation_the_whole_system_is_iterated_on() {
-    let run =
-        Run::converged("contact_3d/hexahedra_nonmatching", "gmres", |deck| set(deck, "use_mixed_ulm_solver", false));
+    let run = CondensedRun::converged("contact_3d/hexahedra_nonmatching", "gmres", |deck| {
+        set(deck, "use_mixed_ulm_solver", false)
+    });
     assert!(run.is_solved_by("gmres"), "{:?}", run.engines);
 }
 
@@ -254,8 +255,8 @@ fn what_cannot_be_condensed_is_named_once_and_solved_whole() {
             &["the free unknowns of its node see", " of LAGRANGE_MULTIPLIER_CONTACT_PRESSURE"],
         ),
     ] {
-        let direct = Run::converged(case, DIRECT, as_it_is);
-        let run = Run::converged(case, "gmres", as_it_is);
+        let direct = CondensedRun::converged(case, DIRECT, as_it_is);
+        let run = CondensedRun::converged(case, "gmres", as_it_is);
         assert_eq!(
             run.said.matches("warning[not-condensed] ProjectParameters.json:").count(),
             1,
@@ -271,7 +272,7 @@ fn what_cannot_be_condensed_is_named_once_and_solved_whole() {
         let (difference, field) = direct.difference(&run);
         assert!(difference < AGREE, "{case}: {field} differs by {difference:e}");
 
-        let strict = Run::of(case, "gmres", |deck| set(deck, "fallback_if_dual_lm_not_valid", false));
+        let strict = CondensedRun::of(case, "gmres", |deck| set(deck, "fallback_if_dual_lm_not_valid", false));
         assert_eq!(strict.code, Some(4), "{case}: {}", strict.said);
         assert!(
             strict.said.contains("cannot be condensed") && strict.said.contains("name a direct engine"),
@@ -279,6 +280,6 @@ fn what_cannot_be_condensed_is_named_once_and_solved_whole() {
             strict.said
         );
     }
-    let direct = Run::converged("contact_3d/hexahedra_on_tetrahedra", DIRECT, as_it_is);
+    let direct = CondensedRun::converged("contact_3d/hexahedra_on_tetrahedra", DIRECT, as_it_is);
     assert!(!direct.said.contains("not-condensed"), "{}", direct.said);
 }

@@ -84,7 +84,7 @@ const WITNESSES: &[(&str, &str, Witness)] = &[
 ];
 
 /// The numbers of all results of a run by quantity, and its iterations by step.
-struct Outcome {
+struct KratosOutcome {
     quantities: BTreeMap<String, Vec<f64>>,
     iterations: Vec<usize>,
 }
@@ -106,7 +106,7 @@ fn set(deck: &mut Value, object: &str, key: &str, value: &Value) {
 }
 
 /// Runs a case that is edited first, as Kratos does where `like` holds.
-fn run(case: &str, like: bool, edit: impl Fn(&mut Value)) -> Outcome {
+fn run(case: &str, like: bool, edit: impl Fn(&mut Value)) -> KratosOutcome {
     let scratch = scratch_copy(&root().join("tests/cases").join(case));
     let path = scratch.path().join("ProjectParameters.json");
     let mut deck = read_json(&path).expect("a deck");
@@ -126,7 +126,7 @@ fn run(case: &str, like: bool, edit: impl Fn(&mut Value)) -> Outcome {
         collect(file, &results, &mut quantities);
     }
     assert!(!quantities.is_empty(), "{case} writes no results");
-    Outcome { quantities, iterations }
+    KratosOutcome { quantities, iterations }
 }
 
 fn files(folder: &Path) -> BTreeSet<String> {
@@ -146,7 +146,7 @@ fn collect(name: &str, value: &Value, out: &mut BTreeMap<String, Vec<f64>>) {
 }
 
 /// The largest change of a quantity, as a share of its largest value.
-fn difference(a: &Outcome, b: &Outcome) -> f64 {
+fn difference(a: &KratosOutcome, b: &KratosOutcome) -> f64 {
     let size = |values: &[f64]| values.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let change = |(name, own): (&String, &Vec<f64>)| {
         let other = &b.quantities[name];
@@ -214,7 +214,7 @@ fn every_setting_of_kratos_is_named_with_its_source() {
 
 #[test]
 fn every_setting_of_kratos_changes_what_it_says() {
-    let mut runs: BTreeMap<(&str, bool), Outcome> = BTreeMap::new();
+    let mut runs: BTreeMap<(&str, bool), KratosOutcome> = BTreeMap::new();
     let mut problems = Vec::new();
     for (object, key, witness) in WITNESSES {
         assert!(DEVIATIONS.iter().any(|d| d.key == *key && d.of.contains(object)), "{object} {key} is no deviation");

@@ -39,5 +39,5 @@ mod supports;
 #[path = "../support/thread_ranks.rs"]
 mod thread_ranks;
 mod units;
-mod unseen;
+mod penetration_check;
 mod wear;

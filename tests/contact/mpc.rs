@@ -73,7 +73,7 @@ impl Problem {
 }
 
 /// Outcome of a run: nodes in order of their making, displacements and reactions of the last step, and iterations.
-struct Outcome {
+struct MpcOutcome {
     nodes: Vec<Vec3>,
     displacement: Vec<Vec3>,
     reaction: Vec<Vec3>,
@@ -82,7 +82,7 @@ struct Outcome {
     said: String,
 }
 
-impl Outcome {
+impl MpcOutcome {
     fn sum(&self, nodes: &[usize]) -> Vec3 {
         nodes.iter().fold([0.0; 3], |sum, &n| std::array::from_fn(|c| sum[c] + self.reaction[n][c]))
     }
@@ -120,7 +120,7 @@ fn facets(corner: [usize; 4], tetrahedra: bool) -> Vec<Vec<usize>> {
     if tetrahedra { vec![vec![a, b, c], vec![a, c, d]] } else { vec![corner.to_vec()] }
 }
 
-fn run(problem: &Problem) -> Outcome {
+fn run(problem: &Problem) -> MpcOutcome {
     let (mut nodes, mut elements, mut conditions) = (Vec::new(), Vec::new(), Vec::new());
     let (mut bodies, mut faces): (Vec<Vec<usize>>, Vec<Vec<usize>>) = (Vec::new(), Vec::new());
     let (mut bottom, mut top, mut held) = (Vec::new(), Vec::new(), Vec::new());
@@ -322,7 +322,7 @@ fn run(problem: &Problem) -> Outcome {
     };
     let (displacement, reaction) = (vectors("DISPLACEMENT"), vectors("REACTION"));
     let bottom = if problem.rigid { held } else { bottom };
-    Outcome { displacement, reaction, bottom, top, said: said(&output), nodes: nodes.clone() }
+    MpcOutcome { displacement, reaction, bottom, top, said: said(&output), nodes: nodes.clone() }
 }
 
 /// The frame of the plane turned by an angle: its first axis along the interface, its third across.
@@ -332,7 +332,7 @@ fn oblique(angle: f64) -> [Vec3; 3] {
 }
 
 /// Forces balance, and moments do about any point, as the interface is flat and closed.
-fn assert_balance(outcome: &Outcome, name: &str) {
+fn assert_balance(outcome: &MpcOutcome, name: &str) {
     let (below, above) = (outcome.sum(&outcome.bottom), outcome.sum(&outcome.top));
     let (turned, back) = (outcome.moment(&outcome.bottom), outcome.moment(&outcome.top));
     for c in 0..3 {

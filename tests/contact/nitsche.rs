@@ -16,9 +16,9 @@ use zelus::contact_structural_mechanics::pairs::{
 use zelus::contact_structural_mechanics::slave_nodes::{SlaveStates, SlaveTable};
 use zelus::contact_structural_mechanics::variables::FRICTION_COEFFICIENT;
 use zelus::structural_mechanics::variables::{DISPLACEMENT, NORMAL};
-use zelus_core::entities::{LocalSystems, Want, require_kind};
+use zelus_core::entities::{LocalSystems, Request, require_kind};
 use zelus_core::geometry::{Shape, shape_functions};
-use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue, Role};
+use zelus_core::model::{EntityRole, ModelPart, Nodes, Properties, PropertyValue};
 use zelus_core::vector3::{add, cross, norm, sub};
 
 use crate::specimen::{Random, Vec3, difference, size};
@@ -61,7 +61,7 @@ impl Contact {
         friction: f64,
         turn: impl Fn(Vec3) -> Vec3,
     ) -> Self {
-        let entry = require_kind(Role::Element, element).expect("an element");
+        let entry = require_kind(EntityRole::Element, element).expect("an element");
         let (cell, space) = (entry.cell.expect("a cell").cell(), entry.space);
         let mut random = Random(3);
         let mut shaken = |x: Vec3| add(x, random.vector(0.05, space));
@@ -144,7 +144,7 @@ impl Contact {
             levels_back: 1,
             normal_variation: NormalVariation::Exact,
             augmentation: Augmentation::Node,
-            compliant: false,
+            regularised: false,
             dynamic: false,
             friction_law: &COULOMB,
             slip_rule: SlipRule::Bounded(Margin::default()),
@@ -158,8 +158,8 @@ impl Contact {
         };
         let groups = group_by_surroundings(&around, vec![pair], &own);
         let (around, (pairs, nodes)) = groups.into_iter().next().expect("one pair");
-        let entry =
-            require_kind(Role::Condition, &condition_name(formulation.condition, slave, master)).expect("a condition");
+        let entry = require_kind(EntityRole::Condition, &condition_name(formulation.condition, slave, master))
+            .expect("a condition");
         let mut states = SlaveStates::of(&part, table, formulation.columns());
         states.read_friction(&part.nodes, &COULOMB);
         let request = PairRequest {
@@ -198,19 +198,19 @@ impl Contact {
     }
 
     /// Forces and tangent by node and component.
-    fn system(&self, want: Want) -> (Vec<f64>, Vec<f64>) {
+    fn system(&self, request: Request) -> (Vec<f64>, Vec<f64>) {
         let mut out = LocalSystems::default();
-        out.reset(1, self.block.unknowns().len(), want);
-        self.block.local_systems(&self.part.view(), 0..1, want, &mut out).expect("a pair");
+        out.reset(1, self.block.unknowns().len(), request);
+        self.block.local_systems(&self.part.view(), 0..1, request, &mut out).expect("a pair");
         let place = |u: &zelus_core::entities::LocalUnknown| {
             3 * self.block.nodes(0)[u.node as usize] as usize + u.variable.offset()
         };
         let places: Vec<usize> = self.block.unknowns().iter().map(place).collect();
         let n = 3 * self.part.nodes.len();
-        let (mut forces, mut tangent) = (vec![0.0; n], vec![0.0; if want == Want::Both { n * n } else { 0 }]);
+        let (mut forces, mut tangent) = (vec![0.0; n], vec![0.0; if request == Request::Both { n * n } else { 0 }]);
         for (row, &place) in places.iter().enumerate() {
             forces[place] += out.rhs[row];
-            for (column, &other) in places.iter().enumerate().filter(|_| want == Want::Both) {
+            for (column, &other) in places.iter().enumerate().filter(|_| request == Request::Both) {
                 tangent[place * n + other] += out.lhs[row * places.len() + column];
             }
         }
@@ -221,7 +221,7 @@ impl Contact {
 /// Every kind on every facet with every variant: pressed in, its tractions not those of contact.
 fn walk(mut visit: impl FnMut(&str, &dyn Fn(&dyn Fn(Vec3) -> Vec3) -> Contact, &[Vec3], &[Vec3])) {
     for kind in KINDS {
-        let space = require_kind(Role::Element, kind.0).expect("an element").space;
+        let space = require_kind(EntityRole::Element, kind.0).expect("an element").space;
         for masters in if space == 2 { vec![2, 3] } else { vec![3, 4, 6] } {
             for variant in VARIANTS {
                 for friction in [0.0, 0.15, 10.0] {
@@ -237,7 +237,7 @@ fn walk(mut visit: impl FnMut(&str, &dyn Fn(&dyn Fn(Vec3) -> Vec3) -> Contact, &
                     let presses = |[now, before]: &[Vec<Vec3>; 2]| {
                         let mut contact = make(&|x| x);
                         contact.set(now, before);
-                        size(contact.system(Want::Residual).0) > 0.1
+                        size(contact.system(Request::Residual).0) > 0.1
                     };
                     let [now, before] = states.into_iter().find(presses).expect("a state that presses");
                     visit(&name, &make, &now, &before);
@@ -252,10 +252,10 @@ fn tangents_are_derivatives() {
     walk(|name, make, now, before| {
         let mut contact = make(&|x| x);
         contact.set(now, before);
-        let (forces, tangent) = contact.system(Want::Both);
+        let (forces, tangent) = contact.system(Request::Both);
         assert!(size(forces.iter().copied()) > 0.1, "{name}: nothing presses");
         assert!(
-            difference(&forces, &contact.system(Want::Residual).0) < 1e-12 * size(forces.iter().copied()),
+            difference(&forces, &contact.system(Request::Residual).0) < 1e-12 * size(forces.iter().copied()),
             "{name}"
         );
         let (n, largest) = (forces.len(), size(tangent.iter().copied()));
@@ -265,7 +265,7 @@ fn tangents_are_derivatives() {
                 let mut moved = now.to_vec();
                 moved[column / 3][column % 3] += h;
                 contact.set(&moved, before);
-                contact.system(Want::Residual).0
+                contact.system(Request::Residual).0
             };
             let (plus, minus) = (at(1e-6), at(-1e-6));
             for row in 0..n {
@@ -285,7 +285,7 @@ fn forces_are_in_balance_and_turn_with_the_bodies() {
     walk(|name, make, now, before| {
         let mut contact = make(&|x| x);
         contact.set(now, before);
-        let forces = contact.system(Want::Residual).0;
+        let forces = contact.system(Request::Residual).0;
         let most = size(forces.iter().copied());
         let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
         for (f, x) in forces.as_chunks::<3>().0.iter().zip(&contact.part.nodes.current) {
@@ -312,14 +312,14 @@ fn forces_are_in_balance_and_turn_with_the_bodies() {
         // The whole problem in other axes, and from a turned state where strains are finite.
         let mut other = make(&turn);
         other.set(&turned(now), &turned(before));
-        let found = other.system(Want::Residual).0;
+        let found = other.system(Request::Residual).0;
         assert!(difference(&found, &expected) < 1e-10 * most, "{name}: off by {:e}", difference(&found, &expected));
         if name.contains("Lagrangian") {
             let initial = contact.part.nodes.initial.clone();
             let moved =
                 |u: &[Vec3]| -> Vec<Vec3> { initial.iter().zip(u).map(|(x, u)| sub(turn(add(*x, *u)), *x)).collect() };
             contact.set(&moved(now), &moved(before));
-            let found = contact.system(Want::Residual).0;
+            let found = contact.system(Request::Residual).0;
             assert!(difference(&found, &expected) < 1e-9 * most, "{name}: off by {:e}", difference(&found, &expected));
         }
     });

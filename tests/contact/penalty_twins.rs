@@ -11,12 +11,12 @@ const DECK: &str = "ProjectParameters.json";
 const TOLERANCE: f64 = 1e-3;
 
 /// Nodal numbers of the slave side at some times.
-struct Run {
+struct PenaltyRun {
     history: Results,
     values: Results,
 }
 
-impl Run {
+impl PenaltyRun {
     /// A case with another formulation, all defaults of its process but for settings of the problem itself.
     fn of(case: &str, process: &str, formulation: &str) -> Self {
         let scratch = scratch_copy(&root().join("tests/cases").join(case));
@@ -73,8 +73,8 @@ impl Run {
 #[test]
 fn sheared_cylinders() {
     let case = "contact_2d/cattaneo_mindlin_light_coarse";
-    let twin = Run::of(case, "alm_contact_process", "ALMContactFrictional");
-    let penalty = Run::of(case, "penalty_contact_process", "PenaltyContactFrictional");
+    let twin = PenaltyRun::of(case, "alm_contact_process", "ALMContactFrictional");
+    let penalty = PenaltyRun::of(case, "penalty_contact_process", "PenaltyContactFrictional");
     let (force, shear) = (0.1, 2.0 * 8.0 * 0.05851e-2);
     for time in [1.25, 1.625, 2.0] {
         for run in [&twin, &penalty] {
@@ -106,12 +106,12 @@ fn sheared_cylinders() {
 #[test]
 fn pressed_spheres() {
     let case = "contact_2d/hertz_spheres_light_coarse";
-    let twin = Run::of(case, "alm_contact_process", "ALMContactFrictionless");
+    let twin = PenaltyRun::of(case, "alm_contact_process", "ALMContactFrictionless");
     for (process, formulation) in [
         ("penalty_contact_process", "PenaltyContactFrictionless"),
         ("perturbed_lagrangian_contact_process", "PerturbedLagrangianContactFrictionless"),
     ] {
-        let run = Run::of(case, process, formulation);
+        let run = PenaltyRun::of(case, process, formulation);
         for time in [0.3, 1.0] {
             let pressed = run.total("AUGMENTED_NORMAL_CONTACT_PRESSURE", time) / (-117.808787 * time.powi(3));
             println!("{formulation}, t = {time}: pressed by {pressed:.6} of the load");

@@ -25,9 +25,9 @@ const BLOCKS: Stack = Stack {
 };
 
 /// Iterations of each step, deepest penetration and largest displacement over the size.
-type Outcome = (Vec<usize>, f64, f64);
+type SizeOutcome = (Vec<usize>, f64, f64);
 
-fn outcome(stack: &Stack) -> Result<Outcome, String> {
+fn outcome(stack: &Stack) -> Result<SizeOutcome, String> {
     let folder = tempfile::tempdir().expect("a scratch folder");
     stack.write(folder.path(), |deck| {
         let settings = &mut deck["solver_settings"];

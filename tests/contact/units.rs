@@ -142,10 +142,10 @@ struct Deck {
 }
 
 /// Iterations of each step and, by quantity, the values at all nodes over the largest of them.
-type Outcome = (Vec<usize>, BTreeMap<String, Vec<f64>>);
+type UnitOutcome = (Vec<usize>, BTreeMap<String, Vec<f64>>);
 
 impl Deck {
-    fn outcome(&self, length: f64, stress: f64) -> Result<Outcome, String> {
+    fn outcome(&self, length: f64, stress: f64) -> Result<UnitOutcome, String> {
         let folder = scratch_copy(&root().join("tests/cases").join(self.case));
         for (find, with) in &self.changes {
             change(folder.path(), DECK, find, with);

@@ -4,7 +4,7 @@
 use crate::support::{read_json, root, said, scratch_copy, zelus};
 use serde_json::{Value, json};
 use std::path::Path;
-use zelus::contact_structural_mechanics::compatibility::{Use, refusal};
+use zelus::contact_structural_mechanics::compatibility::{FormulationUse, refusal};
 use zelus::contact_structural_mechanics::pairs::{Formulation, FormulationEntry, Friction};
 use zelus_core::registry::all;
 
@@ -36,7 +36,7 @@ fn process_of(formulation: &str, explicit: bool) -> (&'static str, &str) {
 /// Further settings that a deck asks for.
 #[derive(Debug, Clone, Copy)]
 struct Wish {
-    wanted: Use,
+    wanted: FormulationUse,
     variation: &'static str,
     dynamic: bool,
     tresca: bool,
@@ -50,7 +50,7 @@ fn replace(folder: &Path, file: &str, pairs: &[(&str, &str)]) {
 }
 
 fn check(name: &str, formulation: &Formulation, wish: Wish) {
-    let Use { dimension, axisymmetric, explicit, arc_length } = wish.wanted;
+    let FormulationUse { dimension, axisymmetric, explicit, arc_length } = wish.wanted;
     let case = if dimension == 2 { "contact_2d/nonmatching" } else { "contact_3d/hexahedra_nonmatching" };
     let scratch = scratch_copy(&root().join("tests/cases").join(case));
     if axisymmetric && dimension == 2 {
@@ -117,12 +117,12 @@ fn check(name: &str, formulation: &Formulation, wish: Wish) {
 }
 
 /// Contact hands the whole load on to the supports: 1e6 on a top of unit width, of 1 by 0.8, or of radius 1 about the axis.
-fn check_balance(folder: &Path, wanted: Use, what: &str) {
+fn check_balance(folder: &Path, wanted: FormulationUse, what: &str) {
     let results = read_json(&folder.join("results.json")).expect("results");
     let along = if wanted.dimension == 2 { "REACTION_Y" } else { "REACTION_Z" };
     let load = match wanted {
-        Use { dimension: 3, .. } => 0.8e6,
-        Use { axisymmetric: true, .. } => std::f64::consts::PI * 1e6,
+        FormulationUse { dimension: 3, .. } => 0.8e6,
+        FormulationUse { axisymmetric: true, .. } => std::f64::consts::PI * 1e6,
         _ => 1e6,
     };
     let of_node = |series: &Value| series.get(along).and_then(|values| values.as_array()?.last()?.as_f64());
@@ -131,7 +131,7 @@ fn check_balance(folder: &Path, wanted: Use, what: &str) {
 }
 
 fn plain(dimension: usize) -> Wish {
-    let wanted = Use { dimension, axisymmetric: false, explicit: false, arc_length: false };
+    let wanted = FormulationUse { dimension, axisymmetric: false, explicit: false, arc_length: false };
     Wish { wanted, variation: VARIATIONS[0], dynamic: false, tresca: false, adapt_penalty: false }
 }
 
@@ -150,9 +150,9 @@ fn every_formulation_runs_or_is_refused_about_an_axis_in_time_and_adapted() {
     for (name, formulation) in formulations() {
         for dimension in [2, 3] {
             let plain = plain(dimension);
-            check(name, formulation, Wish { wanted: Use { axisymmetric: true, ..plain.wanted }, ..plain });
-            check(name, formulation, Wish { wanted: Use { explicit: true, ..plain.wanted }, ..plain });
-            check(name, formulation, Wish { wanted: Use { arc_length: true, ..plain.wanted }, ..plain });
+            check(name, formulation, Wish { wanted: FormulationUse { axisymmetric: true, ..plain.wanted }, ..plain });
+            check(name, formulation, Wish { wanted: FormulationUse { explicit: true, ..plain.wanted }, ..plain });
+            check(name, formulation, Wish { wanted: FormulationUse { arc_length: true, ..plain.wanted }, ..plain });
             check(name, formulation, Wish { dynamic: true, ..plain });
             check(name, formulation, Wish { adapt_penalty: true, ..plain });
             if formulation.friction == Friction::Coulomb {

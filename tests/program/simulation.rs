@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex};
 
 use crate::support::root;
 use serde_json::{Value, json};
-use zelus::core::analysis::{Driver, Point};
+use zelus::core::analysis::{Driver, LoopPoint};
 use zelus::core::assembly::System;
 use zelus::core::model::Model;
 use zelus::core::parameters::Node;
@@ -132,8 +132,8 @@ fn errors_are_values() {
 
 /// Notes the points of the loop, does nothing at one of them, and makes the processes named "counting".
 struct Noting {
-    points: Arc<Mutex<Vec<Point>>>,
-    leaves_out: Option<Point>,
+    points: Arc<Mutex<Vec<LoopPoint>>>,
+    leaves_out: Option<LoopPoint>,
     counts: Arc<Mutex<usize>>,
 }
 
@@ -146,7 +146,7 @@ impl Driver for Noting {
 
     fn at(
         &mut self,
-        point: Point,
+        point: LoopPoint,
         root: &str,
         model: &mut Model,
         _system: &System,
@@ -169,7 +169,7 @@ impl Process for Counting {
 
 #[test]
 fn a_driver_makes_processes_and_decides_when_the_stage_acts() {
-    let run = |leaves_out: Option<Point>| {
+    let run = |leaves_out: Option<LoopPoint>| {
         let mut deck = deck(2, 1.0);
         deck["processes"]["own"] = json!([{"python_module": "counting", "Parameters": {}}]);
         let (points, counts) = (Arc::default(), Arc::default());
@@ -180,9 +180,10 @@ fn a_driver_makes_processes_and_decides_when_the_stage_acts() {
         let moved = displacement(&simulation).iter().any(|u| *u != 0.0);
         (points.lock().expect("one thread").clone(), *counts.lock().expect("one thread"), moved)
     };
-    let step = [Point::BeginStep, Point::EndStep, Point::Output];
-    let all = [&[Point::Read, Point::Ready, Point::BeforeLoop][..], &step, &step, &[Point::Finalize]].concat();
+    let step = [LoopPoint::BeginStep, LoopPoint::EndStep, LoopPoint::Output];
+    let all = [&[LoopPoint::Read, LoopPoint::Ready, LoopPoint::BeforeLoop][..], &step, &step, &[LoopPoint::Finalize]]
+        .concat();
     assert_eq!(run(None), (all.clone(), 2, true));
     // nothing loads the bodies then
-    assert_eq!(run(Some(Point::BeginStep)), (all, 0, false));
+    assert_eq!(run(Some(LoopPoint::BeginStep)), (all, 0, false));
 }

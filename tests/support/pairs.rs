@@ -10,18 +10,19 @@ use zelus::contact_structural_mechanics::mortar::{
     IntegrationOrder, MOST_NODES, OperatorThreshold, SegmentationSettings,
 };
 use zelus::contact_structural_mechanics::pairs::{
-    ContactBlock, Formulation, FormulationEntry, Multiplier, Pair, PairKey, PairRequest, Present, condition_name,
+    ContactBlock, Formulation, FormulationEntry, IntegrationState, Multiplier, Pair, PairKey, PairRequest,
+    condition_name,
 };
 use zelus::contact_structural_mechanics::slave_nodes::{SlaveStates, SlaveTable};
 use zelus::contact_structural_mechanics::variables::{
     DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, TANGENT_XI,
 };
 use zelus::structural_mechanics::variables::{DISPLACEMENT, NORMAL};
-use zelus_core::entities::{EntityBlock, LocalSystems, Want, find_kind};
+use zelus_core::entities::{EntityBlock, LocalSystems, Request, find_kind};
 use zelus_core::geometry::mapping::unit_normal;
 use zelus_core::geometry::{Shape, reversed};
 use zelus_core::model::flags::ACTIVE;
-use zelus_core::model::{ModelPart, Nodes, Role};
+use zelus_core::model::{EntityRole, ModelPart, Nodes};
 use zelus_core::registry::all;
 use zelus_core::vector3::{add, dot, normalised, scale, sub};
 
@@ -156,7 +157,7 @@ impl Setting {
     fn build(&self, formulation: &Formulation) -> Option<(ModelPart, Box<dyn ContactBlock>)> {
         let [slave, master] = self.shapes;
         let name = condition_name(formulation.condition, slave, master);
-        let entry = find_kind(Role::Condition, &name)?;
+        let entry = find_kind(EntityRole::Condition, &name)?;
         let masters = self.master.len();
         let current: Vec<Vec3> = self.master.iter().chain(&self.slave).copied().collect();
         let count = current.len();
@@ -197,7 +198,7 @@ impl Setting {
             levels_back: 1,
             normal_variation: NormalVariation::Update,
             augmentation: Augmentation::Node,
-            compliant: formulation.compliant,
+            regularised: formulation.regularised,
             dynamic: false,
             friction_law: &COULOMB,
             slip_rule: SlipRule::Bounded(Margin::default()),
@@ -231,7 +232,7 @@ impl Setting {
         part.nodes.move_all();
         let here = part.nodes.current.clone();
         part.nodes.current[..masters].iter_mut().for_each(|x| *x = add(*x, self.drift));
-        block.keep_operators(Present { view: &part.view(), states: &states, own: &|_| true });
+        block.keep_operators(IntegrationState { view: &part.view(), states: &states, own: &|_| true });
         part.nodes.current = here;
         for (row, value) in self.multiplier_rows(block.as_ref()).zip(self.multiplier_values(block.as_ref())) {
             set(&mut part, block.as_ref(), row, value);
@@ -263,10 +264,10 @@ fn get(part: &ModelPart, block: &dyn EntityBlock, row: usize) -> f64 {
 }
 
 /// The local system of the only pair.
-pub fn system(part: &ModelPart, block: &dyn EntityBlock, want: Want) -> LocalSystems {
+pub fn system(part: &ModelPart, block: &dyn EntityBlock, request: Request) -> LocalSystems {
     let mut out = LocalSystems::default();
-    out.reset(1, block.unknowns().len(), want);
-    block.local_systems(&part.view(), 0..1, want, &mut out).expect("a pair that can be computed");
+    out.reset(1, block.unknowns().len(), request);
+    block.local_systems(&part.view(), 0..1, request, &mut out).expect("a pair that can be computed");
     out
 }
 
@@ -316,8 +317,8 @@ fn tangents_of_pairs_are_derivatives() {
             let setting = Setting { operator_threshold, ..setting.clone() };
             let (mut part, block) = setting.build(formulation).expect("a block");
             let block = block.as_ref();
-            let LocalSystems { lhs, rhs, .. } = system(&part, block, Want::Both);
-            let plain = system(&part, block, Want::Residual).rhs;
+            let LocalSystems { lhs, rhs, .. } = system(&part, block, Request::Both);
+            let plain = system(&part, block, Request::Residual).rhs;
             let force = size(plain.iter().copied());
             assert!(difference(&rhs, &plain) <= 1e-12 * force, "{name}: the residual depends on what is wanted");
             if setting.states.iter().any(|(active, _)| *active) {
@@ -333,7 +334,7 @@ fn tangents_of_pairs_are_derivatives() {
                 let mut at = |h: f64| {
                     set(&mut part, block, column, value + h);
                     part.nodes.move_all();
-                    system(&part, block, Want::Residual).rhs
+                    system(&part, block, Request::Residual).rhs
                 };
                 let h = 1e-6;
                 let (plus, minus) = (at(h), at(-h));
@@ -353,7 +354,7 @@ fn pairs_push_back_what_is_pushed_and_turn_with_the_bodies() {
     walk(0.05, |name, formulation, setting| {
         let space = setting.space();
         let (part, block) = setting.build(formulation).expect("a block");
-        let rhs = system(&part, block.as_ref(), Want::Residual).rhs;
+        let rhs = system(&part, block.as_ref(), Request::Residual).rhs;
         let rows = setting.multiplier_rows(block.as_ref());
         let vectors = rows.len() == space * setting.slave.len();
         for c in 0..space {
@@ -368,7 +369,7 @@ fn pairs_push_back_what_is_pushed_and_turn_with_the_bodies() {
         };
         let shift = [0.4, -0.3, if space == 3 { 0.2 } else { 0.0 }];
         let (part, block) = setting.moved(turn, shift, vectors).build(formulation).expect("a block");
-        let after = system(&part, block.as_ref(), Want::Residual).rhs;
+        let after = system(&part, block.as_ref(), Request::Residual).rhs;
         let turned_rows = if vectors { rhs.len() } else { rows.start };
         let mut expected: Vec<f64> = rhs[..turned_rows]
             .chunks(space)
@@ -392,12 +393,12 @@ fn the_order_of_a_facets_nodes_does_not_matter() {
         // rectangles and a rule of degree six: the integrals are exact however the overlap is cut
         setting.order = 5;
         let (part, block) = setting.build(formulation).expect("a block");
-        let rhs = system(&part, block.as_ref(), Want::Residual).rhs;
+        let rhs = system(&part, block.as_ref(), Request::Residual).rhs;
         let (masters, slaves) = (setting.master.len(), setting.slave.len());
         let each = setting.multiplier_rows(block.as_ref()).len() / slaves;
         for (slave_by, master_by) in [(1, 0), (0, 1), (2, 1)] {
             let (part, block) = setting.recounted(slave_by, master_by).build(formulation).expect("a block");
-            let other = system(&part, block.as_ref(), Want::Residual).rhs;
+            let other = system(&part, block.as_ref(), Request::Residual).rhs;
             let mut back = other.clone();
             let [slave, master] = setting.shapes.map(|shape| shape.cell().corners());
             let turn_back = |rows: &mut [f64], corners: usize, each: usize, by: usize| {

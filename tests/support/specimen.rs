@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use zelus::structural_mechanics::variables::{DISPLACEMENT, TEMPERATURE};
-use zelus_core::entities::{BlockRequest, EntityBlock, LocalSystems, Tangent, Want, block_factory};
+use zelus_core::entities::{BlockRequest, EntityBlock, LocalSystems, Request, Tangent, block_factory};
 use zelus_core::geometry::Shape;
 use zelus_core::model::{
-    EntityKind, ModelPart, Nodes, Properties, PropertyValue, Role, ScalarVariable, VariableKind, variables,
+    EntityKind, EntityRole, ModelPart, Nodes, Properties, PropertyValue, ScalarVariable, VariableKind, variables,
 };
 
 pub type Vec3 = [f64; 3];
@@ -130,12 +130,12 @@ impl Specimen {
         let numbers = values.iter().map(|(name, value)| (name.clone(), PropertyValue::Number(*value)));
         properties.values.extend(numbers);
         part.properties.insert(1, properties);
-        let table = if entry.role == Role::Element { &mut part.elements } else { &mut part.conditions };
+        let table = if entry.role == EntityRole::Element { &mut part.elements } else { &mut part.conditions };
         table.push(1, entry, 1, nodes);
         table.finish();
         load(&mut part, entry, loads);
         let make = block_factory(entry).expect("only kinds with a block are walked");
-        let table = if entry.role == Role::Element { &part.elements } else { &part.conditions };
+        let table = if entry.role == EntityRole::Element { &part.elements } else { &part.conditions };
         let request =
             BlockRequest { entry, members: vec![0], table, nodes: &part.nodes, part: &part, on_initial: false };
         let mut block = make(&request).map_err(|problem| problem.to_string())?;
@@ -173,19 +173,19 @@ impl Specimen {
 
     /// Tangent and right-hand side.
     pub fn system(&self) -> (Vec<f64>, Vec<f64>) {
-        let out = self.local(Want::Both);
+        let out = self.local(Request::Both);
         (out.lhs, out.rhs)
     }
 
     /// The right-hand side alone.
     pub fn residual(&self) -> Vec<f64> {
-        self.local(Want::Residual).rhs
+        self.local(Request::Residual).rhs
     }
 
-    fn local(&self, want: Want) -> LocalSystems {
+    fn local(&self, request: Request) -> LocalSystems {
         let mut out = LocalSystems::default();
-        out.reset(1, self.block.unknowns().len(), want);
-        let result = self.block.local_systems(&self.part.view(), 0..1, want, &mut out);
+        out.reset(1, self.block.unknowns().len(), request);
+        let result = self.block.local_systems(&self.part.view(), 0..1, request, &mut out);
         result.unwrap_or_else(|problem| panic!("{}: {}", self.entry.name, problem.fact));
         out
     }
@@ -225,7 +225,7 @@ pub fn is_axisymmetric(entry: &EntityKind) -> bool {
 fn load(part: &mut ModelPart, entry: &EntityKind, loads: Loads) {
     let wanted = if loads == Loads::Scalars { VariableKind::Scalar } else { VariableKind::Vector3 };
     let mut random = Random(5);
-    let data = if entry.role == Role::Element { &mut part.elements.data } else { &mut part.conditions.data };
+    let data = if entry.role == EntityRole::Element { &mut part.elements.data } else { &mut part.conditions.data };
     // constants that resist rotations are refused
     let bare = [DISPLACEMENT.name(), TEMPERATURE.name()];
     let taken = |name: &str| bare.contains(&name) || name.contains("ROTATIONAL") || name == "NODAL_INERTIA";

@@ -18,7 +18,7 @@ struct Board {
     messages: Vec<Vec<Option<Message>>>,
     /// Ranks that have come to the present meeting, and meetings so far.
     here: usize,
-    meetings: usize,
+    rounds: usize,
 }
 
 struct Group {
@@ -55,12 +55,12 @@ impl ThreadRank {
         board.here += 1;
         if board.here == self.group.size {
             board.here = 0;
-            board.meetings += 1;
+            board.rounds += 1;
             self.group.met.notify_all();
             return;
         }
-        let meeting = board.meetings;
-        let waited = self.group.met.wait_timeout_while(board, PATIENCE, |board| board.meetings == meeting);
+        let round = board.rounds;
+        let waited = self.group.met.wait_timeout_while(board, PATIENCE, |board| board.rounds == round);
         assert!(!waited.expect("no rank has failed").1.timed_out(), "a rank does not come");
     }
 

@@ -5,9 +5,9 @@ use zelus::contact_structural_mechanics::pairs::{
 };
 use zelus::contact_structural_mechanics::tying::{TyingBlock, TyingRequest};
 use zelus::structural_mechanics::variables::DISPLACEMENT;
-use zelus_core::entities::{EntityBlock, Want, find_kind};
+use zelus_core::entities::{EntityBlock, Request, find_kind};
 use zelus_core::geometry::Shape;
-use zelus_core::model::{ModelPart, Nodes, Role};
+use zelus_core::model::{EntityRole, ModelPart, Nodes};
 use zelus_core::registry::all;
 
 use super::pairs::{FACETS, set, system};
@@ -39,7 +39,7 @@ fn block(formulation: &TyingFormulation, slave: Shape, master: Shape) -> Option<
     for &(name, components) in formulation.variables {
         part.nodes.history.add_named(name, components);
     }
-    let entry = find_kind(Role::Condition, &condition_name("MeshTyingMortarCondition", slave, master))?;
+    let entry = find_kind(EntityRole::Condition, &condition_name("MeshTyingMortarCondition", slave, master))?;
     let pair = FacetPair {
         key: PairKey { interface: 0, slave: 0, master: 0 },
         operators: operators(slave.nodes(), master.nodes(), &mut Random(3)),
@@ -73,7 +73,7 @@ fn ties_are_linear_symmetric_and_carry_rigid_shifts() {
             let mut random = Random(4);
             let values: Vec<f64> = (0..n).map(|_| random.next()).collect();
             values.iter().enumerate().for_each(|(row, value)| set(&mut part, block, row, *value));
-            let out = system(&part, block, Want::Both);
+            let out = system(&part, block, Request::Both);
             let label = format!("{name} {slave:?} on {master:?}");
             let product: Vec<f64> =
                 (0..n).map(|i| -(0..n).map(|j| out.lhs[i * n + j] * values[j]).sum::<f64>()).collect();
@@ -81,7 +81,7 @@ fn ties_are_linear_symmetric_and_carry_rigid_shifts() {
             assert!((0..n * n).all(|e| out.lhs[e] == out.lhs[e % n * n + e / n]), "{label}: not symmetric");
             let multipliers = n - n * slave.nodes() / (master.nodes() + 2 * slave.nodes());
             (0..n).for_each(|row| set(&mut part, block, row, if row < multipliers { 0.4 } else { 0.0 }));
-            let shifted = size(system(&part, block, Want::Residual).rhs);
+            let shifted = size(system(&part, block, Request::Residual).rhs);
             assert!(shifted < 1e-13, "{label}: a rigid shift leaves {shifted:e}");
             walked += 1;
         }

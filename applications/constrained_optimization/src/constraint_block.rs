@@ -3,7 +3,7 @@
 use std::ops::Range;
 use zelus_core::model::EntityKind;
 
-use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, Request, StepView, Tangent};
 use zelus_core::scalar::Dual;
 
 use crate::constraints::Constraint;
@@ -68,7 +68,7 @@ impl<M: Method> EntityBlock for ConstraintBlock<M> {
     }
 
     fn tangent(&self) -> Tangent {
-        Tangent::General
+        Tangent::Unsymmetric
     }
 
     fn is_active(&self, _at: usize, _view: &StepView<'_>) -> bool {
@@ -79,7 +79,7 @@ impl<M: Method> EntityBlock for ConstraintBlock<M> {
         &self,
         view: &StepView<'_>,
         range: Range<usize>,
-        _want: Want,
+        _request: Request,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         for (slot, at) in range.enumerate() {

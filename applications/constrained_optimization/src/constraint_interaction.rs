@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::unfit;
 use zelus_core::entities::{ActiveSet, Coupling, EntityBlock, Interaction, Retry, SetChange, find_kind};
-use zelus_core::model::{Carriers, ModelPart, Role};
-use zelus_core::{Carrier, Result, State};
+use zelus_core::model::{DofOwners, EntityRole, ModelPart};
+use zelus_core::{Result, State, StateMapper};
 
 use crate::constraint_block::ConstraintBlock;
 use crate::constraints::{Constraint, INTERACTION};
@@ -28,7 +28,7 @@ struct SavedConstraints(Vec<Vec<ConstraintState>>);
 
 #[typetag::serde(name = "constraints")]
 impl State for SavedConstraints {
-    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+    fn remap(&mut self, _mapper: &mut dyn StateMapper) {}
 }
 
 impl<M: Method> ConstraintInteraction<M> {
@@ -79,7 +79,7 @@ impl<M: Method> Interaction for ConstraintInteraction<M> {
         self.blocks = groups
             .into_iter()
             .map(|(kind, constraints)| {
-                let entry = find_kind(Role::Condition, kind).expect("the name of a registered kind");
+                let entry = find_kind(EntityRole::Condition, kind).expect("the name of a registered kind");
                 ConstraintBlock::new(entry, constraints, Arc::clone(&self.method))
             })
             .collect();
@@ -128,11 +128,11 @@ impl<M: Method> Interaction for ConstraintInteraction<M> {
 }
 
 impl<M: Method> Coupling for ConstraintInteraction<M> {
-    fn unknowns(&self, _part: &ModelPart) -> Vec<Carriers> {
+    fn unknowns(&self, _part: &ModelPart) -> Vec<DofOwners> {
         let nodes: Vec<u32> = self.blocks.iter().flat_map(|b| b.constraints().iter().map(|c| c.node)).collect();
         MULTIPLIERS[..M::MULTIPLIERS]
             .iter()
-            .map(|variable| Carriers::of_nodes(variable.scalar(), nodes.clone()))
+            .map(|variable| DofOwners::of_nodes(variable.scalar(), nodes.clone()))
             .collect()
     }
 
@@ -144,8 +144,8 @@ impl<M: Method> Coupling for ConstraintInteraction<M> {
         0
     }
 
-    fn idle_diagonal(&self) -> f64 {
-        self.method.idle_diagonal()
+    fn inactive_diagonal(&self) -> f64 {
+        self.method.inactive_diagonal()
     }
 }
 

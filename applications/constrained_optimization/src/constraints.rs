@@ -5,7 +5,7 @@
 
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::entities::{
-    BlockRequest, Build, ConditionEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+    BlockRequest, Build, ConditionEntry, EntityView, Kernel, KernelBlock, LocalUnknown, Request, StepView, Tangent,
 };
 use zelus_core::geometry::Shape;
 use zelus_core::model::{ModelPart, Nodes, PropertyValue};
@@ -117,7 +117,7 @@ impl<const NODES: usize> Kernel<NODES, 1> for Stated {
             .into())
     }
 
-    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+    fn state(&self, _entity: &EntityView<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
         Ok(())
     }
 
@@ -127,10 +127,10 @@ impl<const NODES: usize> Kernel<NODES, 1> for Stated {
 
     fn local_system(
         &self,
-        _entity: &Gather<'_, NODES>,
+        _entity: &EntityView<'_, NODES>,
         _state: &(),
         _view: &StepView<'_>,
-        _want: Want,
+        _request: Request,
         _lhs: &mut [f64],
         _rhs: &mut [f64; 1],
     ) -> Result<(), String> {

@@ -11,7 +11,7 @@ use zelus_core::io::{FileUse, Mark, replace_file};
 use zelus_core::model::{Model, ModelPart, Named, ScalarVariable, VariableKind, named};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
-use zelus_core::{Carrier, State};
+use zelus_core::{State, StateMapper};
 
 /// A column of the table.
 #[derive(Debug, Clone, Deserialize)]
@@ -39,7 +39,7 @@ struct SavedRows(Vec<Row>);
 
 #[typetag::serde(name = "iterate_output")]
 impl State for SavedRows {
-    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+    fn remap(&mut self, _mapper: &mut dyn StateMapper) {}
 }
 
 struct IterateOutput {

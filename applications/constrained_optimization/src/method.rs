@@ -71,7 +71,7 @@ pub trait Method: Send + Sync + 'static {
     fn update(&self, _state: &mut ConstraintState) {}
 
     /// Diagonal of a multiplier whose constraint does not act: 1 keeps its value, 0 leaves it without equation.
-    fn idle_diagonal(&self) -> f64 {
+    fn inactive_diagonal(&self) -> f64 {
         1.0
     }
 }

@@ -1,7 +1,9 @@
 //! Converged when the residual is small and every constraint is obeyed: a method that stalls elsewhere is not accepted.
 
 use zelus_core::register;
-use zelus_core::strategies::{Check, ConvergenceCriterion, CriterionEntry, Form, Measure, Measures, Verdict, both};
+use zelus_core::strategies::{
+    ConvergenceCheck, ConvergenceCriterion, CriterionEntry, Form, Measure, Measures, Verdict, both,
+};
 
 use crate::variables::CONSTRAINT_VIOLATION;
 
@@ -13,7 +15,7 @@ struct Feasibility {
 impl ConvergenceCriterion for Feasibility {
     fn judge(&self, measures: &Measures<'_>) -> Verdict {
         let violation = measures.nodes.values.values(&CONSTRAINT_VIOLATION, 0).iter().fold(0.0_f64, |m, v| m.max(*v));
-        Verdict::all(vec![Check {
+        Verdict::all(vec![ConvergenceCheck {
             label: "violation",
             ratio: violation,
             ratio_tolerance: self.tolerance,

@@ -4,7 +4,7 @@
 
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{
-    BlockRequest, Build, ElementEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+    BlockRequest, Build, ElementEntry, EntityView, Kernel, KernelBlock, LocalUnknown, Request, StepView, Tangent,
 };
 use zelus_core::geometry::Shape;
 use zelus_core::register;
@@ -30,7 +30,7 @@ impl<const POWER: i32> Kernel<1, 1> for Spring<POWER> {
         Ok(Self { stiffness: properties.require("SPRING_STIFFNESS")?, rest: properties.require("REST_POSITION")? })
     }
 
-    fn state(&self, _entity: &Gather<'_, 1>, _view: &StepView<'_>) -> Result<(), String> {
+    fn state(&self, _entity: &EntityView<'_, 1>, _view: &StepView<'_>) -> Result<(), String> {
         Ok(())
     }
 
@@ -40,10 +40,10 @@ impl<const POWER: i32> Kernel<1, 1> for Spring<POWER> {
 
     fn local_system(
         &self,
-        entity: &Gather<'_, 1>,
+        entity: &EntityView<'_, 1>,
         _state: &(),
         view: &StepView<'_>,
-        _want: Want,
+        _request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; 1],
     ) -> Result<(), String> {

@@ -4,7 +4,7 @@ use crate::pairs::{Formulation, Multiplier};
 
 /// Use of a formulation by a deck.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Use {
+pub struct FormulationUse {
     /// Dimensions of the problem.
     pub dimension: usize,
     /// Whether a plane model is rotated about its axis.
@@ -25,7 +25,7 @@ pub struct Refusal {
 }
 
 /// A rule: its condition, and the refusal.
-type Rule = (fn(&Formulation, Use) -> bool, Refusal);
+type Rule = (fn(&Formulation, FormulationUse) -> bool, Refusal);
 
 /// Everything that is not listed runs: every formulation on every pair of shapes, in the plane, in space and (in the plane)
 /// about an axis, with every `normal_variation`, law of friction, adaptation of the penalty, strategy and time integration.
@@ -63,6 +63,6 @@ const RULES: [Rule; 4] = [
 ];
 
 /// The first reason not to use a formulation so.
-pub fn refusal(formulation: &Formulation, wanted: Use) -> Option<Refusal> {
+pub fn refusal(formulation: &Formulation, wanted: FormulationUse) -> Option<Refusal> {
     RULES.iter().find(|(applies, _)| applies(formulation, wanted)).map(|(_, refusal)| *refusal)
 }

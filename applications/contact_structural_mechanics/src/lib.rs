@@ -14,7 +14,7 @@ pub mod flags;
 pub mod variables;
 pub mod mortar;
 pub mod kratos;
-pub mod resolution;
+pub mod tolerances;
 pub mod law;
 pub mod interface;
 pub mod slave_nodes;

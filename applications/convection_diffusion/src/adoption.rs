@@ -3,7 +3,7 @@
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
 use zelus_core::entities::find_kind;
 use zelus_core::geometry::{Shape, mapping};
-use zelus_core::model::{EntityTable, ModelPart, Properties, Role};
+use zelus_core::model::{EntityRole, EntityTable, ModelPart, Properties};
 use zelus_core::parameters::{Node, Settings};
 
 use crate::columns::Columns;
@@ -27,10 +27,10 @@ pub fn adopt(settings: &Settings, part: &mut ModelPart, report: &mut Report) -> 
     Columns::store(settings, part)?;
     if !settings.get_bool("skip_entities_replace_and_check")? {
         let ModelPart { nodes, elements, conditions, info, .. } = &mut *part;
-        for (role, table) in [(Role::Element, &mut *elements), (Role::Condition, &mut *conditions)] {
+        for (role, table) in [(EntityRole::Element, &mut *elements), (EntityRole::Condition, &mut *conditions)] {
             let key = format!("element_replace_settings.{}_name", role.word());
             let name = match settings.node().get("time_integration_method").and_then(Node::as_str) {
-                Some("semi_implicit") if role == Role::Element => DIFFUSION,
+                Some("semi_implicit") if role == EntityRole::Element => DIFFUSION,
                 _ => settings.get_str(&key)?,
             };
             replace(role, table, name, info.domain_size).map_err(|problem| problem.at(settings.key_place(&key)))?;
@@ -55,8 +55,8 @@ fn stem(name: &str) -> &str {
 ///
 /// # Errors
 /// A kind that is not there for a shape of the mesh.
-pub fn replace(role: Role, table: &mut EntityTable, name: &str, space: usize) -> Result<(), Diagnostic> {
-    let dim = if role == Role::Element { space } else { space - 1 };
+pub fn replace(role: EntityRole, table: &mut EntityTable, name: &str, space: usize) -> Result<(), Diagnostic> {
+    let dim = if role == EntityRole::Element { space } else { space - 1 };
     for at in 0..table.len() {
         let Some(cell) = table.kinds[at].cell.filter(|cell| cell.dim() == dim) else { continue };
         let full = format!("{}{space}D{}N", stem(name), cell.nodes());
@@ -67,7 +67,7 @@ pub fn replace(role: Role, table: &mut EntityTable, name: &str, space: usize) ->
                 table.ids[at],
                 role.word()
             );
-            Diagnostic::error(if role == Role::Element { "unknown-element" } else { "unknown-condition" }, fact)
+            Diagnostic::error(if role == EntityRole::Element { "unknown-element" } else { "unknown-condition" }, fact)
                 .remedy("`zelus list element` and `zelus list condition` show what there is")
         })?;
     }

@@ -1,6 +1,6 @@
 //! A coefficient of the balance of heat: the constant or table of a material, or a field that a process sets on nodes.
 
-use zelus_core::entities::Gather;
+use zelus_core::entities::EntityView;
 use zelus_core::model::{Nodes, Properties, Table};
 use zelus_core::scalar::Real;
 
@@ -69,7 +69,7 @@ impl Coefficient {
     /// material gives none.
     pub fn in_element<const NODES: usize>(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         nodes: &Nodes,
         unknown: &[f64; NODES],
     ) -> Local<'_, NODES> {

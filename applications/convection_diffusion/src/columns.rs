@@ -1,7 +1,7 @@
 //! Columns of the nodes that the balance of heat reads: `convection_diffusion_variables`.
 
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{Gather, StepView};
+use zelus_core::entities::{EntityView, StepView};
 use zelus_core::model::{Fields, ModelPart, Named, PropertyValue, ScalarVariable, VariableKind, named};
 use zelus_core::parameters::Settings;
 use zelus_core::vector3::{add, scale, sub};
@@ -105,7 +105,7 @@ impl Columns {
 
 /// Numbers of a column at the nodes of an entity, at a time level; zero where there is no such column.
 pub fn nodal<const NODES: usize>(
-    entity: &Gather<'_, NODES>,
+    entity: &EntityView<'_, NODES>,
     view: &StepView<'_>,
     column: Option<&str>,
     level: usize,
@@ -118,7 +118,7 @@ pub fn nodal<const NODES: usize>(
 
 /// Velocities at the nodes of an entity relative to the mesh, `share` of the way from the beginning of the step to its end.
 pub fn velocities<const NODES: usize>(
-    entity: &Gather<'_, NODES>,
+    entity: &EntityView<'_, NODES>,
     view: &StepView<'_>,
     columns: &Columns,
     share: f64,

@@ -1,7 +1,7 @@
 //! Heat beside a structure: `thermal_solver_settings` of a structural solver.
 //!
 //! Both share the nodes. Each step solves for heat first, on the mesh as the last step left it, then for the structure, whose laws expand
-//! with the temperatures just found; then both until they agree ([`way`](crate::way)). Elements and faces of heat are made on those of the
+//! with the temperatures just found; then both until they agree ([`crate::coupling_settings`]). Elements and faces of heat are made on those of the
 //! structure, with materials of their own.
 
 use std::path::Path;
@@ -11,22 +11,22 @@ use serde::{Deserialize, Serialize};
 use zelus_core::analysis::{ExtensionDefinition, SolverExtensionEntry, SolverSettings};
 use zelus_core::assembly::{Assembler, System};
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
-use zelus_core::entities::{EntityBlock, Interaction, Outer};
+use zelus_core::entities::{EntityBlock, Interaction, OuterLoop};
 use zelus_core::io::read_materials_of;
-use zelus_core::model::{EntityTable, ModelPart, Properties, Role};
+use zelus_core::model::{EntityRole, EntityTable, ModelPart, Properties};
 use zelus_core::parameters::Settings;
 use zelus_core::register;
 use zelus_core::strategies::{Monitor, Phases, SolutionStrategy, StepRecord};
-use zelus_linear_algebra::{Carrier, State, Unknowns, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, Unknowns, stored_as_bytes};
 
 use crate::adoption::{PROPERTIES, replace};
 use crate::columns::Columns;
+use crate::coupling_settings::CouplingStrategy;
 use crate::elements::ABOUT_Y;
 use crate::heat::Heat;
+use crate::monolithic::MonolithicCoupling;
 use crate::plastic_heat::PlasticHeat;
-use crate::sweeps::{Goal, Sweeps};
-use crate::together::Together;
-use crate::way::Way;
+use crate::staggered::{StaggeredCoupling, StaggeredSettings};
 
 /// Name of the extension.
 pub const EXTENSION: &str = "thermal_solver_settings";
@@ -76,7 +76,7 @@ fn complete(own: &mut Properties, of_heat: &Properties, report: &mut Report) {
 }
 
 /// The entities of the structure as those of heat.
-fn table_of_heat(role: Role, table: &EntityTable, settings: &Settings, space: usize) -> Result<EntityTable> {
+fn table_of_heat(role: EntityRole, table: &EntityTable, settings: &Settings, space: usize) -> Result<EntityTable> {
     let mut out = table.clone();
     for (at, properties) in out.properties.iter_mut().enumerate() {
         let id = table.data.level(PROPERTIES, 0).get(at).copied().unwrap_or(0.0);
@@ -125,8 +125,8 @@ fn around(
 ) -> Result<Box<dyn SolutionStrategy>> {
     let solver = SolverSettings::new(settings.node(), &mut Report::new())?;
     let space = part.info.domain_size;
-    let elements = table_of_heat(Role::Element, &part.elements, &solver.settings, space)?;
-    let conditions = table_of_heat(Role::Condition, &part.conditions, &solver.settings, space)?;
+    let elements = table_of_heat(EntityRole::Element, &part.elements, &solver.settings, space)?;
+    let conditions = table_of_heat(EntityRole::Condition, &part.conditions, &solver.settings, space)?;
     let own = (std::mem::replace(&mut part.elements, elements), std::mem::replace(&mut part.conditions, conditions));
     let mut system = System { interactions, ..System::default() };
     let made = system.make_blocks(part);
@@ -140,18 +140,20 @@ fn around(
     let (strategy, _) = solver.strategy(part, &mut system, report)?;
     let plastic = PlasticHeat::of(part);
     let mut heat = Heat { strategy, system, plastic, last: None, sweeps: 0 };
-    let way = match Way::of(part) {
+    let coupling = match CouplingStrategy::of(part) {
         // Steps that are explicit are too short to be worth a second look.
-        Way::Staggered(_) if !(structure.can_retry() && heat.strategy.can_retry()) => Way::Sequential,
-        Way::Monolithic if !structure.takes_followers() || heat.strategy.linearized().is_none() => {
+        CouplingStrategy::Staggered(_) if !(structure.can_retry() && heat.strategy.can_retry()) => {
+            CouplingStrategy::Sequential
+        }
+        CouplingStrategy::Monolithic if !structure.takes_followers() || heat.strategy.linearized().is_none() => {
             let fact = "\"strategy\": \"monolithic\" of \"coupling_settings\" needs implicit steps of heat and of the structure, \
                         these by Newton's iteration (\"analysis_type\": \"non_linear\", no \"arc_length\")";
             let problem = Diagnostic::error("invalid-value", fact).at(settings.place());
             return Err(problem.remedy("choose such steps, or \"strategy\": \"staggered\"").into());
         }
-        way => way,
+        coupling => coupling,
     };
-    Ok(Box::new(Coupled { heat: Arc::new(Mutex::new(heat)), structure, way }))
+    Ok(Box::new(Coupled { heat: Arc::new(Mutex::new(heat)), structure, coupling }))
 }
 
 /// Heat first, then the structure.
@@ -160,7 +162,7 @@ struct Coupled {
     heat: Arc<Mutex<Heat>>,
     structure: Box<dyn SolutionStrategy>,
     /// How both are solved.
-    way: Way,
+    coupling: CouplingStrategy,
 }
 
 impl Coupled {
@@ -169,15 +171,15 @@ impl Coupled {
     }
 
     /// The structure's step, with heat solved for again whenever it has converged.
-    fn solve_by_turns(
+    fn solve_staggered(
         &mut self,
-        goal: Goal,
+        goal: StaggeredSettings,
         part: &mut ModelPart,
         system: &mut System,
         monitor: &mut dyn Monitor,
         start: Vec<f64>,
     ) -> Result<StepRecord> {
-        let sweeps = Sweeps::new(self.heat.clone(), goal, part, start);
+        let sweeps = StaggeredCoupling::new(self.heat.clone(), goal, part, start);
         if system.interactions.iter_mut().any(|interaction| interaction.active_set().is_some()) {
             // The contact state of the step must not begin anew: its iteration goes on.
             system.interactions.push(Box::new(sweeps));
@@ -190,13 +192,13 @@ impl Coupled {
             let mut record = self.structure.solve_step(part, system, monitor)?;
             let outer = if record.converged {
                 self.heat().plastic.take(part, &system.elements);
-                sweeps.look_again(part)?
+                sweeps.solve_heat_again(part)?
             } else {
-                Outer::Done
+                OuterLoop::Done
             };
             match outer {
-                Outer::Again => continue,
-                Outer::Failed(why) => {
+                OuterLoop::Continue => continue,
+                OuterLoop::Failed(why) => {
                     record.converged = false;
                     record.failure = Some(why);
                 }
@@ -219,11 +221,11 @@ stored_as_bytes!(CoupledState);
 
 #[typetag::serde(name = "thermo_mechanically_coupled")]
 impl State for CoupledState {
-    fn carry(&mut self, carrier: &mut dyn Carrier) {
-        let of_structure = carrier.begin_unknowns(&self.unknowns_of_heat);
-        self.heat.iter_mut().for_each(|state| state.carry(carrier));
-        carrier.begin_unknowns(&of_structure);
-        self.structure.iter_mut().for_each(|state| state.carry(carrier));
+    fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        let of_structure = mapper.begin_unknowns(&self.unknowns_of_heat);
+        self.heat.iter_mut().for_each(|state| state.remap(mapper));
+        mapper.begin_unknowns(&of_structure);
+        self.structure.iter_mut().for_each(|state| state.remap(mapper));
     }
 }
 
@@ -237,8 +239,8 @@ impl SolutionStrategy for Coupled {
     }
 
     fn remedy(&self) -> &'static str {
-        match self.way {
-            Way::Staggered(_) => {
+        match self.coupling {
+            CouplingStrategy::Staggered(_) => {
                 "\"coupling_settings\": {\"strategy\": \"monolithic\"} where heat and structure drive each other, a shorter \
                  \"time_step\", more \"max_iteration\", the strategy \"line_search\""
             }
@@ -263,21 +265,21 @@ impl SolutionStrategy for Coupled {
             return Ok(StepRecord { failure: heat.failure.map(|why| format!("heat: {why}")), ..heat });
         }
         self.heat().sweeps = 0;
-        let mut record = match self.way {
-            Way::Sequential => {
+        let mut record = match self.coupling {
+            CouplingStrategy::Sequential => {
                 let record = self.structure.solve_step(part, system, monitor)?;
                 self.heat().plastic.take(part, &system.elements);
                 record
             }
-            Way::Staggered(goal) => self.solve_by_turns(goal, part, system, monitor, start)?,
-            Way::Monolithic => {
-                system.interactions.push(Box::new(Together::new(self.heat.clone(), start)));
+            CouplingStrategy::Staggered(goal) => self.solve_staggered(goal, part, system, monitor, start)?,
+            CouplingStrategy::Monolithic => {
+                system.interactions.push(Box::new(MonolithicCoupling::new(self.heat.clone(), start)));
                 let record = self.structure.solve_step(part, system, monitor);
                 system.interactions.pop();
                 record?
             }
         };
-        if self.way != Way::Sequential {
+        if self.coupling != CouplingStrategy::Sequential {
             record.interactions.push(("heat_sweeps".to_owned(), self.heat().sweeps as f64));
         }
         let heat = self.heat().last.take().unwrap_or(heat);
@@ -290,9 +292,9 @@ impl SolutionStrategy for Coupled {
     }
 
     /// The mesh has moved with the structure, which carries no heat through itself.
-    fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
-        self.heat().accept_step(part)?;
-        self.structure.accept_step(part, system)?;
+    fn finalize_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
+        self.heat().finalize_step(part)?;
+        self.structure.finalize_step(part, system)?;
         if let Some(mesh) = Columns::of(part).mesh_velocity.filter(|_| part.nodes.history.has("ACCELERATION")) {
             let velocity = part.nodes.history.level("VELOCITY", 0).to_vec();
             part.nodes.history.write_level(mesh, 0, &velocity);

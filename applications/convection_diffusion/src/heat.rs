@@ -26,8 +26,8 @@ impl Heat {
         self.strategy.solve_step(part, &mut self.system, monitor)
     }
 
-    pub(crate) fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        self.strategy.accept_step(part, &mut self.system)
+    pub(crate) fn finalize_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        self.strategy.finalize_step(part, &mut self.system)
     }
 
     pub(crate) fn resume(&mut self, part: &ModelPart, state: Box<dyn State>) -> Result<()> {

@@ -1,6 +1,6 @@
 //! Thermal material of the elements of one block.
 
-use zelus_core::entities::{BlockRequest, Gather, StepView};
+use zelus_core::entities::{BlockRequest, EntityView, StepView};
 use zelus_core::model::Properties;
 
 use crate::coefficient::{Coefficient, Local};
@@ -37,7 +37,7 @@ impl Material {
     /// Conductivity, density and specific heat in an element where the unknown has these values.
     pub fn in_element<const NODES: usize>(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         view: &StepView<'_>,
         unknown: &[f64; NODES],
     ) -> [Local<'_, NODES>; 3] {
@@ -48,7 +48,7 @@ impl Material {
     /// A conductivity that neither the material nor a process gives.
     pub fn check_conductivity<const NODES: usize>(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         conductivity: &Local<'_, NODES>,
     ) -> Result<(), String> {
         match self.conductivity.unknown_in(conductivity) {

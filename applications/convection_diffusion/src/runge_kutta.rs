@@ -13,7 +13,7 @@ use zelus_core::strategies::{
     IterationRecord, Monitor, SolutionStrategy, StepRecord, StrategyEntry, accept, critical_step, recorded,
     write_reactions,
 };
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
 use crate::columns::Columns;
 use crate::elements::{PROJECTING, STAGE};
@@ -61,8 +61,8 @@ stored_as_bytes!(RungeKuttaState);
 
 #[typetag::serde(name = "runge_kutta_4")]
 impl State for RungeKuttaState {
-    fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.assembler.carry(carrier);
+    fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        self.assembler.remap(mapper);
     }
 }
 
@@ -236,7 +236,7 @@ impl SolutionStrategy for RungeKutta {
         recorded(part, system, |part, system| self.advance(part, system))
     }
 
-    fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
+    fn finalize_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
         accept(part, system)
     }
 

@@ -6,9 +6,9 @@ use zelus_core::strategies::{Scheme, SchemeEntry, SchemeFactory};
 /// Name of the scheme.
 pub const SCHEME: &str = "convection_diffusion";
 
-struct WeightedEnds;
+struct ThetaScheme;
 
-impl Scheme for WeightedEnds {
+impl Scheme for ThetaScheme {
     fn is_static(&self) -> bool {
         true
     }
@@ -22,5 +22,5 @@ impl Scheme for WeightedEnds {
 register! { SchemeEntry SCHEME,
     about: "heat: elements store it themselves, by the weights of both ends of a step",
     source: "ρc (T − T₀)/Δt = θ f(T) + (1 − θ) f(T₀)",
-    build: SchemeFactory::Implicit(|_| Ok(Box::new(WeightedEnds))),
+    build: SchemeFactory::Implicit(|_| Ok(Box::new(ThetaScheme))),
 }

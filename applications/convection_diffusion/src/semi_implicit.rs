@@ -7,7 +7,7 @@ use zelus_core::register;
 use zelus_core::strategies::{Scheme, SchemeEntry, SchemeFactory};
 
 use crate::columns::Columns;
-use crate::transport::{Locator, Paths, Whole, carried};
+use crate::transport::{Locator, Paths, WholeMesh, advected};
 use crate::variables::PROJECTED_SCALAR1;
 
 /// Name of the scheme.
@@ -15,14 +15,14 @@ pub const SEMI_IMPLICIT: &str = "semi_implicit_convection_diffusion";
 /// Elements of the step after advection.
 pub const DIFFUSION: &str = "EulerianDiffusion";
 
-struct CarriedThenConducted {
+struct AdvectionThenConduction {
     /// Parts of a path in a step.
     parts: usize,
     /// The mesh, once it has been brought together.
-    whole: Option<Whole>,
+    whole: Option<WholeMesh>,
 }
 
-impl Scheme for CarriedThenConducted {
+impl Scheme for AdvectionThenConduction {
     fn prepare(&self, part: &mut ModelPart) {
         part.nodes.history.add(&PROJECTED_SCALAR1);
     }
@@ -37,7 +37,7 @@ impl Scheme for CarriedThenConducted {
 
     fn predict(&mut self, part: &mut ModelPart, _dofs: &DofTable) -> Result<()> {
         let columns = Columns::of(part);
-        let whole = self.whole.get_or_insert_with(|| Whole::of(part));
+        let whole = self.whole.get_or_insert_with(|| WholeMesh::of(part));
         let values = part.nodes.history.level(columns.unknown.column, 0);
         let own: Vec<[f64; 1]> = whole.own.iter().map(|&node| [values[node as usize]]).collect();
         let values = whole.field(part, &own);
@@ -52,8 +52,9 @@ impl Scheme for CarriedThenConducted {
             time: part.info.delta_time,
             parts: self.parts,
         };
-        let carried = whole.field(part, &carried(part, whole, &Locator::new(&mesh), &paths, &values));
-        let here: Vec<f64> = (0..part.nodes.len() as u32).map(|node| carried[Whole::place(part, node)][0]).collect();
+        let advected = whole.field(part, &advected(part, whole, &Locator::new(&mesh), &paths, &values));
+        let here: Vec<f64> =
+            (0..part.nodes.len() as u32).map(|node| advected[WholeMesh::place(part, node)][0]).collect();
         part.nodes.history.values_mut(&PROJECTED_SCALAR1, 0).copy_from_slice(&here);
         Ok(())
     }
@@ -69,6 +70,6 @@ register! { SchemeEntry SEMI_IMPLICIT,
             let problem = settings.error("bfecc_substepping", "invalid-value", "\"bfecc_substepping\" is 0");
             return Err(problem.remedy("write the number of parts of a path, from 1").into());
         }
-        Ok(Box::new(CarriedThenConducted { parts, whole: None }))
+        Ok(Box::new(AdvectionThenConduction { parts, whole: None }))
     }),
 }

@@ -1,8 +1,8 @@
 //! A model part with one entity of one kind, for tests.
 
-use zelus_core::entities::{BlockRequest, EntityBlock, Gauss, LocalSystems, Want, block_factory, find_kind};
+use zelus_core::entities::{BlockRequest, EntityBlock, Gauss, LocalSystems, Request, block_factory, find_kind};
 use zelus_core::geometry::Shape;
-use zelus_core::model::{ModelPart, Nodes, Properties, PropertyValue, Role, Variable};
+use zelus_core::model::{EntityRole, ModelPart, Nodes, Properties, PropertyValue, Variable};
 
 use crate::variables::DISPLACEMENT;
 
@@ -74,7 +74,7 @@ pub(crate) struct Single {
 }
 
 impl Single {
-    pub(crate) fn new(role: Role, name: &str, law: Option<&str>, values: &[(&str, f64)], x: &[Vec3]) -> Self {
+    pub(crate) fn new(role: EntityRole, name: &str, law: Option<&str>, values: &[(&str, f64)], x: &[Vec3]) -> Self {
         let entry = find_kind(role, name).unwrap_or_else(|| panic!("{name} is not registered"));
         let mut part = ModelPart::new("test");
         part.nodes = Nodes::new((1..=x.len()).collect(), x.to_vec());
@@ -86,11 +86,11 @@ impl Single {
         }
         part.properties.insert(1, properties);
         let nodes: Vec<u32> = (0..x.len() as u32).collect();
-        let table = if role == Role::Element { &mut part.elements } else { &mut part.conditions };
+        let table = if role == EntityRole::Element { &mut part.elements } else { &mut part.conditions };
         table.push(1, entry, 1, &nodes);
         table.finish();
         let make = block_factory(entry).unwrap_or_else(|| panic!("{name} is no block"));
-        let table = if role == Role::Element { &part.elements } else { &part.conditions };
+        let table = if role == EntityRole::Element { &part.elements } else { &part.conditions };
         let request =
             BlockRequest { entry, members: vec![0], table, nodes: &part.nodes, part: &part, on_initial: false };
         let mut block = make(&request).unwrap();
@@ -119,14 +119,14 @@ impl Single {
 
     pub(crate) fn damping(&self) -> Vec<f64> {
         let mut out = LocalSystems::default();
-        out.reset(1, self.block.unknowns().len(), Want::Both);
+        out.reset(1, self.block.unknowns().len(), Request::Both);
         self.block.damping(&self.part.view(), 0..1, &mut out);
         out.lhs
     }
 
     /// Lets the history advance.
     pub(crate) fn accept(&mut self) {
-        self.block.accept_step(&self.part.view()).map_err(|e| e.fact).unwrap();
+        self.block.finalize_step(&self.part.view()).map_err(|e| e.fact).unwrap();
     }
 
     /// Takes over the history of another model's entity.
@@ -139,23 +139,23 @@ impl Single {
     }
 
     pub(crate) fn system(&self) -> (Vec<f64>, Vec<f64>) {
-        self.try_system(Want::Both).unwrap()
+        self.try_system(Request::Both).unwrap()
     }
 
     pub(crate) fn residual(&self) -> Vec<f64> {
-        self.try_system(Want::Residual).unwrap().1
+        self.try_system(Request::Residual).unwrap().1
     }
 
-    pub(crate) fn try_system(&self, want: Want) -> Result<(Vec<f64>, Vec<f64>), String> {
+    pub(crate) fn try_system(&self, request: Request) -> Result<(Vec<f64>, Vec<f64>), String> {
         let mut out = LocalSystems::default();
-        out.reset(1, self.block.unknowns().len(), want);
-        self.block.local_systems(&self.part.view(), 0..1, want, &mut out).map_err(|e| e.fact)?;
+        out.reset(1, self.block.unknowns().len(), request);
+        self.block.local_systems(&self.part.view(), 0..1, request, &mut out).map_err(|e| e.fact)?;
         Ok((out.lhs, out.rhs))
     }
 
     pub(crate) fn mass(&self, lumped: bool) -> Vec<f64> {
         let mut out = LocalSystems::default();
-        out.reset(1, self.block.unknowns().len(), Want::Both);
+        out.reset(1, self.block.unknowns().len(), Request::Both);
         assert!(self.block.mass(&self.part.view(), 0..1, lumped, &mut out).unwrap());
         out.lhs
     }

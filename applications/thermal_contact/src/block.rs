@@ -6,11 +6,11 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, Request, StepView, Tangent};
 use zelus_core::model::{EntityKind, ScalarVariable};
 use zelus_core::scalar::Real;
 
-use crate::law::{ByTemperatures, ConductanceLaw, Meeting};
+use crate::law::{ByTemperatures, ConductanceLaw, ContactPoint};
 
 /// A point of a pair.
 #[derive(Debug, Clone)]
@@ -20,7 +20,7 @@ pub struct Point {
     /// Area that it stands for.
     pub weight: f64,
     /// How the bodies meet there.
-    pub meeting: Meeting,
+    pub contact: ContactPoint,
     /// Heat of friction that enters slave and master (power per area).
     pub friction: [f64; 2],
 }
@@ -56,7 +56,7 @@ impl ConductanceBlock {
         let conductance = self
             .laws
             .iter()
-            .fold(ByTemperatures::constant(0.0), |sum, law| sum + law.conductance(&point.meeting, temperatures));
+            .fold(ByTemperatures::constant(0.0), |sum, law| sum + law.conductance(&point.contact, temperatures));
         conductance * (temperatures[0] - temperatures[1])
     }
 
@@ -109,7 +109,7 @@ impl EntityBlock for ConductanceBlock {
     }
 
     fn tangent(&self) -> Tangent {
-        Tangent::General
+        Tangent::Unsymmetric
     }
 
     fn is_active(&self, _at: usize, _view: &StepView<'_>) -> bool {
@@ -120,7 +120,7 @@ impl EntityBlock for ConductanceBlock {
         &self,
         view: &StepView<'_>,
         range: Range<usize>,
-        want: Want,
+        request: Request,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         let count = self.unknowns.len();
@@ -135,7 +135,7 @@ impl EntityBlock for ConductanceBlock {
                     let friction = point.friction[usize::from(i < self.masters)];
                     rhs[i] += point.weight * point.n[i] * (sign(i) * flux.value() + friction);
                 }
-                if want == Want::Both {
+                if request == Request::Both {
                     for i in 0..count {
                         for j in 0..count {
                             let by = flux.gradient[usize::from(j < self.masters)];
@@ -154,7 +154,7 @@ mod tests {
     use super::*;
     use zelus_convection_diffusion::variables::TEMPERATURE;
     use zelus_core::entities::require_kind;
-    use zelus_core::model::{ModelPart, Role};
+    use zelus_core::model::{EntityRole, ModelPart};
     use zelus_core::parameters::Document;
     use zelus_core::registry::named;
 
@@ -175,17 +175,17 @@ mod tests {
         let mut part = ModelPart::new("Heat");
         part.nodes = zelus_core::model::Nodes::new(vec![1, 2, 3, 4], vec![[0.0; 3]; 4]);
         part.nodes.history.add(&TEMPERATURE);
-        let meeting = Meeting { pressure: 0.0, gap: 0.3, touches: false };
+        let contact = ContactPoint { pressure: 0.0, gap: 0.3, touches: false };
         let point =
-            |a: f64, b: f64| Point { n: vec![a, 1.0 - a, b, 1.0 - b], weight: 0.4, meeting, friction: [0.0; 2] };
-        let entry = require_kind(Role::Condition, "ContactConductanceCondition2D2N").unwrap();
+            |a: f64, b: f64| Point { n: vec![a, 1.0 - a, b, 1.0 - b], weight: 0.4, contact, friction: [0.0; 2] };
+        let entry = require_kind(EntityRole::Condition, "ContactConductanceCondition2D2N").unwrap();
         let pairs = (vec![vec![point(0.2, 0.3), point(0.7, 0.9)]], vec![0, 1, 2, 3], 2);
         let block = ConductanceBlock::new(entry, pairs, TEMPERATURE.scalar(), Vec::from(laws).into());
         let mut at = |values: [f64; 4]| {
             part.nodes.history.values_mut(&TEMPERATURE, 0).copy_from_slice(&values);
             let mut out = LocalSystems::default();
-            out.reset(1, 4, Want::Both);
-            block.local_systems(&part.view(), 0..1, Want::Both, &mut out).unwrap();
+            out.reset(1, 4, Request::Both);
+            block.local_systems(&part.view(), 0..1, Request::Both, &mut out).unwrap();
             (out.lhs, out.rhs)
         };
         let values = [3.0, 4.0, 7.0, 5.5];

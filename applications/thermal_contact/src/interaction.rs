@@ -17,13 +17,13 @@ use zelus_convection_diffusion::elements::radial;
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Coupling, EntityBlock, Interaction, require_kind};
-use zelus_core::model::{ModelPart, Role};
+use zelus_core::model::{EntityRole, ModelPart};
 use zelus_core::parameters::{Interval, SpaceTime};
 use zelus_core::processes::ScalarValue;
 use zelus_core::vector3::dot;
 
 use crate::block::{ConductanceBlock, Point};
-use crate::law::{ConductanceLaw, Meeting};
+use crate::law::{ConductanceLaw, ContactPoint};
 
 /// Name of the interaction.
 const NAME: &str = "thermal contact";
@@ -33,7 +33,7 @@ const STEM: &str = "ContactConductanceCondition";
 register_pair_conditions! { "ContactConductanceCondition", "heat between two facets that face each other" }
 
 /// Settings of a deck.
-pub struct Chosen {
+pub struct ThermalContactSettings {
     /// Between which surfaces.
     pub surfaces: FacingSurfaces,
     /// Times in which heat passes.
@@ -52,7 +52,7 @@ pub struct Chosen {
 
 /// Heat between the bodies of a part.
 pub struct ThermalContact {
-    chosen: Chosen,
+    settings: ThermalContactSettings,
     blocks: Vec<ConductanceBlock>,
     keys: Vec<PairKey>,
     graph: u64,
@@ -61,8 +61,8 @@ pub struct ThermalContact {
 
 impl ThermalContact {
     /// As chosen, of which nothing has been looked for yet.
-    pub fn new(chosen: Chosen) -> Self {
-        Self { chosen, blocks: Vec::new(), keys: Vec::new(), graph: 1, has_acted: false }
+    pub fn new(settings: ThermalContactSettings) -> Self {
+        Self { settings, blocks: Vec::new(), keys: Vec::new(), graph: 1, has_acted: false }
     }
 
     /// The points of two facets at which heat passes.
@@ -72,7 +72,7 @@ impl ThermalContact {
         let is_computed =
             slave.nodes.iter().all(|&node| status.get(node as usize).is_some_and(|status| *status >= 0.0));
         let [pressures, gaps] = [&CONTACT_PRESSURE, &CONTACT_GAP].map(|variable| part.nodes.values.values(variable, 0));
-        let acts_apart = self.chosen.laws.iter().any(|law| law.acts_apart());
+        let acts_apart = self.settings.laws.iter().any(|law| law.acts_apart());
         let size = slave.extent(part);
         let work = work_of_friction(part);
         let share = share_of_slave(part, pair.facets);
@@ -85,23 +85,23 @@ impl ThermalContact {
                 let touches = sum(&|node| f64::from(u8::from(status[node] > 0.0))) > 0.0;
                 (touches, sum(&|node| pressures[node]), if touches { sum(&|node| gaps[node]) } else { found.gap })
             } else {
-                let touches = found.gap <= self.chosen.touching * size;
+                let touches = found.gap <= self.settings.touching * size;
                 (touches, 0.0, if touches { 0.0 } else { found.gap })
             };
-            let round = if self.chosen.axisymmetric { TAU * found.position[radial(&part.info)] } else { 1.0 };
+            let round = if self.settings.axisymmetric { TAU * found.position[radial(&part.info)] } else { 1.0 };
             let [masters, slaves] =
                 [(&found.master, master), (&found.slave, slave)].map(|(n, of)| &n[..of.nodes.len()]);
-            let meeting = Meeting { pressure: pressure.max(0.0), gap: gap.max(0.0), touches };
+            let contact = ContactPoint { pressure: pressure.max(0.0), gap: gap.max(0.0), touches };
             let work = if is_computed { sum(&work) } else { 0.0 };
-            let across = self.chosen.across.as_ref().map_or(0.0, |(coefficient, speed)| {
+            let across = self.settings.across.as_ref().map_or(0.0, |(coefficient, speed)| {
                 let here = SpaceTime { current: found.position, initial: found.position, time: part.info.time };
-                coefficient * meeting.pressure * speed.value(&here).abs()
+                coefficient * contact.pressure * speed.value(&here).abs()
             });
-            let power = self.chosen.friction * (work / part.info.delta_time + across);
+            let power = self.settings.friction * (work / part.info.delta_time + across);
             (touches || acts_apart).then(|| Point {
                 n: [masters, slaves].concat(),
                 weight: found.weight * round,
-                meeting,
+                contact,
                 friction: [share * power, (1.0 - share) * power],
             })
         };
@@ -114,7 +114,7 @@ impl ThermalContact {
             let points = self.points(part, &pair);
             (!points.is_empty()).then_some((pair.key, points))
         };
-        let surfaces = &self.chosen.surfaces;
+        let surfaces = &self.settings.surfaces;
         (0..surfaces.interfaces().len()).flat_map(|at| surfaces.of_pairs(part, at, of_pair)).collect()
     }
 }
@@ -155,7 +155,7 @@ impl Interaction for ThermalContact {
     }
 
     fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        let acts = self.chosen.interval.contains(part.info.time);
+        let acts = self.settings.interval.contains(part.info.time);
         let pairs = if acts { self.pairs(part) } else { Vec::new() };
         let keys: Vec<PairKey> = pairs.iter().map(|(key, _)| *key).collect();
         self.graph += u64::from(keys != self.keys);
@@ -164,11 +164,11 @@ impl Interaction for ThermalContact {
         self.blocks.clear();
         let unknown = Columns::of(part).unknown;
         for ((slave, master), (pairs, nodes)) in
-            group_by_shapes(self.chosen.surfaces.interfaces(), pairs, |(key, _)| *key)
+            group_by_shapes(self.settings.surfaces.interfaces(), pairs, |(key, _)| *key)
         {
-            let entry = require_kind(Role::Condition, &condition_name(STEM, slave, master))?;
+            let entry = require_kind(EntityRole::Condition, &condition_name(STEM, slave, master))?;
             let points = pairs.into_iter().map(|(_, points)| points).collect();
-            let laws = self.chosen.laws.clone();
+            let laws = self.settings.laws.clone();
             self.blocks.push(ConductanceBlock::new(entry, (points, nodes, master.nodes()), unknown, laws));
         }
         Ok(())

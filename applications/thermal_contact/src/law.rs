@@ -10,7 +10,7 @@ pub type ByTemperatures = Dual<2>;
 
 /// How two bodies meet at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Meeting {
+pub struct ContactPoint {
     /// By which they press on each other (force per area), 0 where they do not.
     pub pressure: f64,
     /// Between them (length), 0 where they touch.
@@ -22,7 +22,7 @@ pub struct Meeting {
 /// The conductance of a contact.
 pub trait ConductanceLaw: Send + Sync {
     /// Heat by area and difference of temperature (power per area and temperature) at the temperatures of slave and master.
-    fn conductance(&self, meeting: &Meeting, temperatures: [ByTemperatures; 2]) -> ByTemperatures;
+    fn conductance(&self, contact: &ContactPoint, temperatures: [ByTemperatures; 2]) -> ByTemperatures;
 
     /// Whether heat passes without touch.
     fn acts_apart(&self) -> bool {

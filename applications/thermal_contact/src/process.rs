@@ -9,7 +9,7 @@ use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, ScalarValue};
 use zelus_core::register;
 use zelus_core::registry::named;
 
-use crate::interaction::{Chosen, ThermalContact};
+use crate::interaction::{ThermalContact, ThermalContactSettings};
 use crate::law::{ConductanceLaw, ContactConductanceEntry};
 
 struct ThermalContactProcess {
@@ -48,7 +48,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     }
     let root = settings.get_str("model_part_name")?.to_owned();
     let across = laws.iter().any(|law| law.acts_apart());
-    let chosen = Chosen {
+    let thermal = ThermalContactSettings {
         surfaces: FacingSurfaces::new(&settings, request.model.root_mut(&root)?, true, across)?,
         interval: Interval::from_node(settings.get("interval")?)?,
         laws: laws.into(),
@@ -57,7 +57,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         friction: settings.get_f64("friction_heat")?,
         across: speed.map(ScalarValue::from_node).transpose()?.map(|speed| (coefficient, speed)),
     };
-    Ok(Box::new(ThermalContactProcess { root, interaction: Some(ThermalContact::new(chosen)) }))
+    Ok(Box::new(ThermalContactProcess { root, interaction: Some(ThermalContact::new(thermal)) }))
 }
 
 register! { ProcessEntry "thermal_contact_process",

@@ -6,7 +6,7 @@ use zelus_core::registered_kind;
 
 /// How a point has been rubbed in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rubbing {
+pub struct SlidingStep {
     /// By which the bodies press on each other (force per area), above 0.
     pub pressure: f64,
     /// How far they have slid on each other (length), from 0.
@@ -16,7 +16,7 @@ pub struct Rubbing {
 /// The wear of one of two bodies.
 pub trait WearLaw: Send + Sync {
     /// Depth that a point of the body has lost (length), from 0.
-    fn depth(&self, rubbing: &Rubbing) -> f64;
+    fn depth(&self, sliding: &SlidingStep) -> f64;
 }
 
 /// Makes a law from its settings, defaults filled in.

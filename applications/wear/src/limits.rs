@@ -7,8 +7,8 @@ use zelus_core::geometry::mapping::{domain_size, is_inverted, shortest_node_dist
 use zelus_core::model::ModelPart;
 use zelus_core::{Error, Result};
 
-use crate::removal::Worn;
-use crate::rubbing::Rubbed;
+use crate::removal::NodalWear;
+use crate::sliding::SlidingPoint;
 
 /// Ratio of wear to the approach that its pressure makes above which pressures may swing: 4/π of the shortest wave on a mesh.
 const STEADY: f64 = 1.0;
@@ -36,7 +36,7 @@ impl Limits {
     ///
     /// # Errors
     /// One that would lose too much or turn inside out.
-    pub fn check(&self, part: &ModelPart, worn: &[Worn]) -> Result<()> {
+    pub fn check(&self, part: &ModelPart, worn: &[NodalWear]) -> Result<()> {
         let mut ways = vec![[0.0; 3]; part.nodes.len()];
         for own in worn {
             (0..3).for_each(|c| ways[own.node as usize][c] += own.way[c]);
@@ -76,13 +76,16 @@ impl Limits {
 /// Wear in a step lowers the pressure by as much as an approach of that depth would raise it; beyond twice the present pressure,
 /// explicit steps overshoot. Depth by pressure times E/h, with the distance h of nodes, is that ratio for the shortest wave on the
 /// mesh.
-pub fn warn_of_swings<'a>(part: &ModelPart, points: impl Iterator<Item = (&'a Rubbed<'a>, f64)>) -> Option<Diagnostic> {
+pub fn warn_of_oscillation<'a>(
+    part: &ModelPart,
+    points: impl Iterator<Item = (&'a SlidingPoint<'a>, f64)>,
+) -> Option<Diagnostic> {
     let young = |of: usize| part.properties.get(&of).and_then(|own| own.number("YOUNG_MODULUS"));
-    let ratio = |(point, depth): (&Rubbed<'a>, f64)| {
+    let ratio = |(point, depth): (&SlidingPoint<'a>, f64)| {
         let [slave, master] = point.facets.map(|facet| young(facet.properties).map_or(0.0, f64::recip));
         let softness = slave + master;
         if softness > 0.0 {
-            2.0 * depth / (point.rubbing.pressure * softness * shortest_node_distance(&point.facets[0].positions(part)))
+            2.0 * depth / (point.sliding.pressure * softness * shortest_node_distance(&point.facets[0].positions(part)))
         } else {
             0.0
         }

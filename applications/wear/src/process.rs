@@ -12,10 +12,10 @@ use zelus_core::registry::named;
 use zelus_core::{Result, register};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
-use crate::law::{Rubbing, WearLaw, WearLawEntry};
-use crate::limits::{Limits, warn_of_swings};
-use crate::removal::{Side, Worn};
-use crate::rubbing::{Reading, Rubbed};
+use crate::law::{SlidingStep, WearLaw, WearLawEntry};
+use crate::limits::{Limits, warn_of_oscillation};
+use crate::removal::{NodalWear, Side};
+use crate::sliding::{SlidingPoint, SlidingSettings};
 use crate::variables::WEAR_DEPTH;
 
 /// The sides of an interface, in the order of their records.
@@ -26,7 +26,7 @@ struct WearProcess {
     interval: Interval,
     /// Laws of slave and master.
     laws: [Vec<Box<dyn WearLaw>>; 2],
-    reading: Reading,
+    reading: SlidingSettings,
     limits: Limits,
     /// Volumes that slaves and masters have lost in the step, and the greatest depth so far.
     lost: [f64; 2],
@@ -37,15 +37,15 @@ struct WearProcess {
 
 impl WearProcess {
     /// Depth that slave or master loses at a point.
-    fn depth(&self, side: usize, rubbing: &Rubbing) -> f64 {
-        self.laws[side].iter().map(|law| law.depth(rubbing)).sum()
+    fn depth(&self, side: usize, sliding: &SlidingStep) -> f64 {
+        self.laws[side].iter().map(|law| law.depth(sliding)).sum()
     }
 
     /// Losses of the sides of an interface, and the warning of a step that is too long.
     fn wear(&self, part: &ModelPart, interface: usize) -> ([Side; 2], Option<Diagnostic>) {
         let points = self.reading.points(part, interface);
         let mut sides = SIDES.map(|role| Side::new(&self.reading.surfaces.interfaces()[interface], role));
-        let depths = |own: &Rubbed<'_>| [0, 1].map(|side| self.depth(side, &own.rubbing));
+        let depths = |own: &SlidingPoint<'_>| [0, 1].map(|side| self.depth(side, &own.sliding));
         for own in &points {
             let shapes = [&own.point.slave, &own.point.master];
             for (at, depth) in depths(own).into_iter().enumerate().filter(|(_, depth)| *depth > 0.0) {
@@ -54,7 +54,7 @@ impl WearProcess {
             }
         }
         let with_depth = points.iter().map(|own| (own, depths(own).iter().sum()));
-        (sides, warn_of_swings(part, with_depth))
+        (sides, warn_of_oscillation(part, with_depth))
     }
 }
 
@@ -82,7 +82,7 @@ impl Process for WearProcess {
         if !self.interval.contains(part.info.time) {
             return Ok(());
         }
-        let mut all: Vec<Worn> = Vec::new();
+        let mut all: Vec<NodalWear> = Vec::new();
         let interfaces = self.reading.surfaces.interfaces();
         for (at, interface) in interfaces.iter().enumerate() {
             let (sides, warning) = self.wear(part, at);
@@ -139,7 +139,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let interval = Interval::from_node(settings.get("interval")?)?;
     let root = settings.get_str("model_part_name")?.to_owned();
     let part = request.model.root_mut(&root)?;
-    let reading = Reading {
+    let reading = SlidingSettings {
         surfaces: FacingSurfaces::new(&settings, part, false, false)?,
         speed: speed.map(ScalarValue::from_node).transpose()?,
         around: settings.get_bool("axisymmetric")?,

@@ -17,7 +17,7 @@ use zelus_core::vector3::{add, dot, scale};
 
 /// How a node of a side wears.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Worn {
+pub struct NodalWear {
     /// Node index.
     pub node: u32,
     /// Depth (length).
@@ -55,11 +55,11 @@ impl Side {
     }
 
     /// How its nodes wear; `around` says that it is of revolution about the y axis.
-    pub fn worn(&self, facets: &[Facet], role: Roles, nodes: &Nodes, around: bool) -> Vec<Worn> {
+    pub fn worn(&self, facets: &[Facet], role: Roles, nodes: &Nodes, around: bool) -> Vec<NodalWear> {
         if self.total <= 0.0 {
             return Vec::new();
         }
-        let mut sums = vec![Sums::default(); self.nodes.len()];
+        let mut sums = vec![NodalSums::default(); self.nodes.len()];
         for facet in facets.iter().filter(|facet| facet.role == role) {
             let x: Vec<[f64; 3]> = facet.nodes.iter().map(|&node| nodes.initial[node as usize]).collect();
             let table = ShapeTable::default_of(facet.shape);
@@ -76,21 +76,22 @@ impl Side {
                 }
             }
         }
-        let worn = |((&node, &volume), sum): ((&u32, &f64), &Sums)| {
+        let worn = |((&node, &volume), sum): ((&u32, &f64), &NodalSums)| {
             let way = scale(sum.normal, -volume / dot(sum.normal, sum.normal));
-            (Worn { node, depth: volume / sum.area, way }, -dot(way, sum.taken))
+            (NodalWear { node, depth: volume / sum.area, way }, -dot(way, sum.taken))
         };
-        let loses = |((_, volume), _): &((&u32, &f64), &Sums)| **volume > 0.0;
+        let loses = |((_, volume), _): &((&u32, &f64), &NodalSums)| **volume > 0.0;
         let found: Vec<_> = self.nodes.iter().zip(&self.volumes).zip(&sums).filter(loses).map(worn).collect();
         let factor = self.total / found.iter().map(|(_, taken)| taken).sum::<f64>();
-        let scaled = |(own, _): (Worn, f64)| Worn { depth: factor * own.depth, way: scale(own.way, factor), ..own };
+        let scaled =
+            |(own, _): (NodalWear, f64)| NodalWear { depth: factor * own.depth, way: scale(own.way, factor), ..own };
         found.into_iter().map(scaled).collect()
     }
 }
 
 /// Sums over the facets around a node, weighted by its φ, or by its N.
 #[derive(Clone, Copy, Default)]
-struct Sums {
+struct NodalSums {
     area: f64,
     normal: [f64; 3],
     /// By N.

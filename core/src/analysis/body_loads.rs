@@ -17,7 +17,7 @@ pub(super) fn warn_of_body_loads(
     let driving = processes.iter().filter(|process| process.drives(part, system));
     let loads = driving.flat_map(|process| process.loads(part));
     for load in loads.filter(|load| matches!(load.on, LoadCarrier::History | LoadCarrier::Nodes)) {
-        let found = Lacking::of(part, |at, variable| {
+        let found = MissingFactors::of(part, |at, variable| {
             let holds = |node: &u32| load.members.binary_search(node).is_ok();
             load.variables.iter().any(|own| own.column == variable) && part.elements.nodes(at).iter().any(holds)
         });
@@ -32,7 +32,7 @@ pub(super) fn warn_of_body_loads(
 
 /// Warns of elements that take part in a dynamic analysis without mass, where no property says that it is zero; collective.
 pub(super) fn warn_of_no_inertia(part: &ModelPart, problems: &mut Report) {
-    let found = Lacking::of(part, |at, _| {
+    let found = MissingFactors::of(part, |at, _| {
         let factor = part.elements.kinds[at as usize].body_load.map(|(_, factor)| factor);
         let properties = part.properties.get(&part.elements.properties[at as usize]);
         factor.zip(properties).is_some_and(|(factor, properties)| properties.number(factor).is_none())
@@ -44,14 +44,14 @@ pub(super) fn warn_of_no_inertia(part: &ModelPart, problems: &mut Report) {
 }
 
 /// Properties of elements that lack the factor of their body loads.
-struct Lacking {
+struct MissingFactors {
     ids: BTreeSet<usize>,
     factor: Option<&'static str>,
     /// Whether other elements have theirs.
     others_take: bool,
 }
 
-impl Lacking {
+impl MissingFactors {
     /// Those of the elements that `concerns` chooses by their place and the variable of their body load; collective.
     fn of(part: &ModelPart, concerns: impl Fn(u32, &'static str) -> bool) -> Self {
         let mut own = Self { ids: BTreeSet::new(), factor: None, others_take: false };

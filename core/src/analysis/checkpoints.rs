@@ -15,13 +15,13 @@ pub(super) struct Checkpoints {
     /// Stages after which the run is saved.
     after: Vec<String>,
     /// The saved run to begin with.
-    pub from: Option<Beginning>,
+    pub from: Option<RestartSource>,
     /// The mesh file of the first stage.
     pub mesh: Option<String>,
 }
 
 /// A saved run that the deck begins with.
-pub(super) struct Beginning {
+pub(super) struct RestartSource {
     pub path: PathBuf,
     /// Where the deck names it.
     pub place: Place,
@@ -55,7 +55,7 @@ impl Checkpoints {
         let checkpoints = setting("stage_checkpoints_folder").map(Node::str).transpose()?.unwrap_or("checkpoints");
         let mut from = None;
         if let Some(node) = setting("load_from_checkpoint") {
-            from = Some(Beginning { path: folders.deck.join(node.str()?), place: node.place() });
+            from = Some(RestartSource { path: folders.deck.join(node.str()?), place: node.place() });
         }
         let mut mesh = None;
         if let Some(import) = stages.first().and_then(|first| first.settings.get_path(IMPORT)) {
@@ -91,7 +91,7 @@ impl Checkpoints {
 ///
 /// # Errors
 /// Keys that are missing or of another type.
-fn restart(import: &Node, folder: &Path) -> Result<Beginning> {
+fn restart(import: &Node, folder: &Path) -> Result<RestartSource> {
     let text =
         |key: &str| Ok::<_, crate::diagnostics::Error>(import.get(key).map(Node::str).transpose()?.unwrap_or(""));
     let (part, label) = (import.require("input_filename")?.str()?, import.require("restart_load_file_label")?.str()?);
@@ -103,16 +103,16 @@ fn restart(import: &Node, folder: &Path) -> Result<Beginning> {
         ("", old) => folder.join(part_folder).join(old),
         (path, _) => folder.join(part_folder).join(path),
     };
-    Ok(Beginning {
+    Ok(RestartSource {
         path: path.join(format!("{name}_{label}.rest")),
         place: import.key_place("restart_load_file_label"),
     })
 }
 
 /// The file that names the latest saved run of a deck, beside the deck or where its results are.
-pub(super) struct Pointer(PathBuf);
+pub(super) struct LatestRunFile(PathBuf);
 
-impl Pointer {
+impl LatestRunFile {
     /// Pointer file of a deck with results in this folder.
     pub(super) fn of(deck: &Path, results: &Path) -> Self {
         Self(results.join(deck.file_name().unwrap_or_default()).with_extension("resume"))

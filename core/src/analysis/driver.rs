@@ -8,7 +8,7 @@ use crate::processes::Process;
 
 /// A point of the loop of a stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Point {
+pub enum LoopPoint {
     /// Mesh and materials are read; no process is made yet, and the stage does nothing here.
     Read,
     /// All is ready to run; the stage does nothing here.
@@ -37,13 +37,13 @@ pub trait Driver: Send {
     }
 
     /// The stage that solves for the part `root` is at `point`; each call of `act` performs the stage's work there. `system` is without
-    /// unknowns before [`Point::Ready`].
+    /// unknowns before [`LoopPoint::Ready`].
     ///
     /// # Errors
     /// As `act`; whatever ends the run.
     fn at(
         &mut self,
-        _point: Point,
+        _point: LoopPoint,
         _root: &str,
         model: &mut Model,
         _system: &System,

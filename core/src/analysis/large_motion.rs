@@ -6,7 +6,7 @@ use crate::assembly::System;
 use crate::diagnostics::Diagnostic;
 use crate::entities::{AssumedSmall, EntityBlock};
 use crate::model::{ModelPart, Rates, mesh_box};
-use crate::strategies::whereabouts;
+use crate::strategies::location;
 use crate::vector3::{norm, sub};
 
 /// Ratio of a displacement to the size of the model from which on it makes no sense.
@@ -69,7 +69,7 @@ impl LargeMotion {
         let ratio = self.displacement.as_ref().map_or(0.0, |most| if size > 0.0 { most.size / size } else { 0.0 });
         let is_here = is_largest(part, ratio) && ratio > MOST;
         if let Some(LargestDisplacement { size, node, time }) = self.displacement.as_ref().filter(|_| is_here) {
-            let (id, place) = (part.nodes.ids[*node as usize], whereabouts(part, *node));
+            let (id, place) = (part.nodes.ids[*node as usize], location(part, *node));
             let fact = format!(
                 "the displacement {size:.3e} of node {id}{place} at time {time} is {ratio:.3e} times the size of the model"
             );
@@ -81,7 +81,7 @@ impl LargeMotion {
         if let Some(LargestSmall { number, element, time }) = self.small.as_ref().filter(|_| is_here) {
             let AssumedSmall { name, value, limit, remedy } = number;
             let (kind, id) = (part.elements.kinds[*element as usize].name, part.elements.ids[*element as usize]);
-            let place = whereabouts(part, part.elements.nodes(*element)[0]);
+            let place = location(part, part.elements.nodes(*element)[0]);
             let fact = format!(
                 "the {name} {value:.3e} of {kind} {id}{place} at time {time} is above {limit}: the element holds for small \
                  displacements only"

@@ -5,7 +5,7 @@
 //! A [`Simulation`] reads `ProjectParameters.json` and makes the steps of its stage, or, in the form with an orchestrator, of its
 //! stages one after another on one model.
 
-mod bodies;
+mod rigid_body_modes;
 mod body_loads;
 mod checkpoints;
 mod coincident_nodes;
@@ -14,17 +14,17 @@ mod cutting;
 mod deck;
 mod driver;
 mod large_motion;
-mod like;
+mod program_defaults;
 mod mesh;
 mod no_load;
 mod older_decks;
 mod rank_layout;
-mod regrouping;
+mod repartitioning;
 mod report;
-mod saved;
+mod step_backup;
 mod saved_run;
 mod sharing;
-mod soundness;
+mod model_checks;
 mod simulation;
 mod solver;
 mod stage;
@@ -32,10 +32,10 @@ mod threads;
 mod time_stepping;
 #[cfg(test)]
 mod two_walls_tests;
-mod unheeded;
+mod unused_settings;
 
 pub use cutting::Cutting;
-pub use driver::{Driver, Point, Unattended};
+pub use driver::{Driver, LoopPoint, Unattended};
 pub use mesh::{DeckMesh, read_deck_mesh};
 pub use report::{RunReport, Sizes};
 pub use simulation::{RunOptions, Simulation};

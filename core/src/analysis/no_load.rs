@@ -2,7 +2,7 @@
 
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report};
-use crate::entities::{EntityBlock, LocalSystems, Want};
+use crate::entities::{EntityBlock, LocalSystems, Request};
 use crate::model::ModelPart;
 use crate::processes::Process;
 use crate::vector3::{norm, sub};
@@ -40,8 +40,8 @@ fn begins_with_forces(block: &dyn EntityBlock, part: &ModelPart) -> bool {
     let mut out = LocalSystems::default();
     (0..block.len()).step_by(AT_A_TIME).any(|first| {
         let range = first..block.len().min(first + AT_A_TIME);
-        out.reset(range.len(), size, Want::Both);
-        if block.local_systems(&part.view(), range.clone(), Want::Both, &mut out).is_err() {
+        out.reset(range.len(), size, Request::Both);
+        if block.local_systems(&part.view(), range.clone(), Request::Both, &mut out).is_err() {
             return true;
         }
         range.enumerate().any(|(at, entity)| {

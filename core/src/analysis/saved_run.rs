@@ -15,8 +15,8 @@ use super::rank_layout::RankLayout;
 use super::report::RunReport;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Result};
-use crate::entities::{EntityBlock, regroup};
-use crate::model::{Field, Fields, Model, ModelPart, Share};
+use crate::entities::{EntityBlock, repartition};
+use crate::model::{Field, Fields, MeshShare, Model, ModelPart};
 use crate::parameters::{Node, Value};
 
 /// States of participants of one kind, in their order.
@@ -147,7 +147,7 @@ pub(super) fn states_of(blocks: &[Box<dyn EntityBlock>]) -> States {
 ///
 /// # Errors
 /// Another number of them, or a state of another kind.
-pub(super) fn hand_out<T>(
+pub(super) fn resume_each<T>(
     to: &mut [T],
     states: States,
     what: &str,
@@ -165,18 +165,18 @@ pub(super) fn hand_out<T>(
 /// # Errors
 /// States of other blocks.
 pub(super) fn resume_blocks(blocks: &mut [Box<dyn EntityBlock>], states: States) -> Result<()> {
-    hand_out(blocks, states, "blocks of entities", |block, state| block.resume(state))
+    resume_each(blocks, states, "blocks of entities", |block, state| block.resume(state))
 }
 
 /// The elements of an earlier stage on a part, with their states: `states` of this rank, or of all earlier ranks where it is
-/// `regrouped`.
+/// `repartitioned`.
 ///
 /// # Errors
 /// States of other elements.
-pub(super) fn earlier_system(part: &ModelPart, mut states: Vec<States>, regrouped: bool) -> Result<System> {
+pub(super) fn earlier_system(part: &ModelPart, mut states: Vec<States>, repartitioned: bool) -> Result<System> {
     let mut system = System::default();
     system.make_blocks(part)?;
-    let states = if regrouped { regroup(&system.elements, states)? } else { states.swap_remove(0) };
+    let states = if repartitioned { repartition(&system.elements, states)? } else { states.swap_remove(0) };
     resume_blocks(&mut system.elements, states)?;
     Ok(System { elements: system.elements, ..System::default() })
 }
@@ -206,7 +206,9 @@ pub(super) fn check_mesh(saved: &ModelPart, read: &ModelPart) -> Result<()> {
     };
     let shares = match (&saved.share, &read.share) {
         (None, None) => true,
-        (Some(a), Some(b)) => Share { pairs: Vec::new(), ..a.clone() } == Share { pairs: Vec::new(), ..b.clone() },
+        (Some(a), Some(b)) => {
+            MeshShare { pairs: Vec::new(), ..a.clone() } == MeshShare { pairs: Vec::new(), ..b.clone() }
+        }
         _ => false,
     };
     let fits = shares
@@ -232,7 +234,7 @@ pub(super) fn whole(mut models: Vec<Model>) -> Result<Model> {
     for (name, part) in models.into_iter().flat_map(|model| model.parts) {
         by_name.entry(name).or_default().push(part);
     }
-    let joined = |(name, shares)| Ok((name, ModelPart::joined(shares).map_err(other_deck)?));
+    let joined = |(name, shares)| Ok((name, ModelPart::merged(shares).map_err(other_deck)?));
     Ok(Model { parts: by_name.into_iter().map(joined).collect::<Result<_>>()?, ..Model::default() })
 }
 

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use zelus_linear_algebra::parallel::Pool;
+use zelus_linear_algebra::parallel::ThreadPool;
 
-use super::checkpoints::{Checkpoints, Pointer};
+use super::checkpoints::{Checkpoints, LatestRunFile};
 use super::deck::{Folders, StageDeck, open, stages};
 use super::driver::{Driver, Unattended};
 use super::rank_layout::RankLayout;
-use super::regrouping::Regrouping;
+use super::repartitioning::Repartitioning;
 use super::report::RunReport;
 use super::saved_run::{LoadedRun, SavedRun, check_mesh, earlier_system, fingerprint, other_deck, states_of, whole};
 use super::stage::{RunContext, Stage, StageRequest, Systems};
@@ -79,13 +79,13 @@ pub struct Simulation {
     driver: Box<dyn Driver>,
     /// Processes to act in the next stage.
     more: Vec<Box<dyn Process>>,
-    pool: Arc<Pool>,
+    pool: Arc<ThreadPool>,
     report: RunReport,
     /// Warnings of the deck as a whole, which no monitor has heard of.
     untold: Vec<Diagnostic>,
     checkpoints: Checkpoints,
     /// Names the latest saved run of a deck that is a file.
-    pointer: Option<Pointer>,
+    pointer: Option<LatestRunFile>,
     /// Time of the clock since the run began or was saved.
     unsaved_since: Instant,
     /// Whether the latest saved run was saved by [`Simulation::autosave`].
@@ -102,7 +102,7 @@ impl Simulation {
         change(&mut deck.root, options)?;
         let mut simulation = Self::new(&deck.root, folder, options)?;
         simulation.untold.splice(..0, deck.warnings);
-        simulation.pointer = Some(Pointer::of(path, &simulation.folders.results));
+        simulation.pointer = Some(LatestRunFile::of(path, &simulation.folders.results));
         Ok(simulation)
     }
 
@@ -241,7 +241,7 @@ impl Simulation {
     /// A deck that is no file; a disk that refuses, a process that fails.
     pub fn suspend(&mut self) -> Result<PathBuf> {
         let pointer = self.pointer.as_ref();
-        let path = pointer.map(Pointer::beside).ok_or_else(|| Error::System("the deck is no file".to_owned()))?;
+        let path = pointer.map(LatestRunFile::beside).ok_or_else(|| Error::System("the deck is no file".to_owned()))?;
         self.save_named(&path)?;
         self.end_early(true)?;
         Ok(path)
@@ -256,7 +256,7 @@ impl Simulation {
         let (Some(stage), Some(settings)) = (&self.stage, self.stages.get(self.over)) else { return Ok(None) };
         let minutes = settings.settings.get_path(AUTOSAVE).and_then(Node::as_f64).unwrap_or(MINUTES);
         let is_due = minutes > 0.0 && self.unsaved_since.elapsed().as_secs_f64() > 60.0 * minutes;
-        let Some(path) = self.pointer.as_ref().map(Pointer::beside).filter(|_| !stage.saves_runs()) else {
+        let Some(path) = self.pointer.as_ref().map(LatestRunFile::beside).filter(|_| !stage.saves_runs()) else {
             return Ok(None);
         };
         // The clock of one rank decides for all.
@@ -282,7 +282,7 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::load`].
     pub fn resume(&mut self, monitor: &mut dyn Monitor) -> Result<Option<PathBuf>> {
-        let named = self.model.ranks.agree(self.pointer.as_ref().map_or(Ok(None), Pointer::read))?;
+        let named = self.model.ranks.agree(self.pointer.as_ref().map_or(Ok(None), LatestRunFile::read))?;
         let Some(path) = named else { return Ok(None) };
         self.load(&path, monitor)?;
         Ok(Some(path))
@@ -373,11 +373,11 @@ impl Simulation {
             monitor.note(&format!("saved by {were} ranks, restarted on {are}: results agree to round-off"));
         }
         let here = Place::file(path);
-        self.take_up(runs, !same, monitor).map_err(|error| error.at(&here))
+        self.restore_runs(runs, !same, monitor).map_err(|error| error.at(&here))
     }
 
-    /// Takes up the run of this rank or, where they are to be `regrouped`, the runs of all ranks that were.
-    fn take_up(&mut self, mut runs: Vec<LoadedRun>, regrouped: bool, monitor: &mut dyn Monitor) -> Result<()> {
+    /// Takes up the run of this rank or, where they are to be `repartitioned`, the runs of all ranks that were.
+    fn restore_runs(&mut self, mut runs: Vec<LoadedRun>, repartitioned: bool, monitor: &mut dyn Monitor) -> Result<()> {
         let ranks = self.model.ranks.clone();
         if self.stage.is_some() || self.over > 0 {
             return Err(other_deck("the simulation has begun already"));
@@ -389,7 +389,7 @@ impl Simulation {
         self.over = runs[0].over;
         let root = runs[0].root.clone();
         let report = std::mem::take(&mut runs[0].report);
-        let were: Vec<RankLayout> = if regrouped {
+        let were: Vec<RankLayout> = if repartitioned {
             runs.iter().enumerate().filter_map(|(rank, run)| run.layout_of(rank)).collect()
         } else {
             Vec::new()
@@ -406,7 +406,7 @@ impl Simulation {
         for root in systems[0].keys().cloned().collect::<Vec<_>>() {
             let part = self.model.parts.get(&root).map_or_else(|| model.root(&root), Ok)?;
             let states = systems.iter_mut().filter_map(|of_rank| of_rank.remove(&root)).collect();
-            self.systems.insert(root, earlier_system(part, states, regrouped)?);
+            self.systems.insert(root, earlier_system(part, states, repartitioned)?);
         }
         if stages.is_empty() {
             self.model = model;
@@ -414,10 +414,10 @@ impl Simulation {
             self.prepare_stage(monitor)?;
             let stage = self.stage.as_mut().expect("just prepared");
             let part = self.model.root(&self.root)?;
-            let state = if regrouped {
+            let state = if repartitioned {
                 let cut = model.parts.remove(&self.root).map(|saved| saved.cut_like(part)).transpose();
                 model.parts.extend(cut.map_err(other_deck)?.map(|part| (self.root.clone(), part)));
-                Regrouping::new(were, part, stage.system()).stage(stages, stage.state(), stage.system())?
+                Repartitioning::new(were, part, stage.system()).stage(stages, stage.state(), stage.system())?
             } else {
                 stages.swap_remove(0)
             };

@@ -8,15 +8,15 @@ use super::cutting::Cutting;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::entities::{Interaction, find_kind};
-use crate::model::{EntityKind, ModelPart, MultiplierRequest, Named, Rates, Role, SolverInfo, named};
+use crate::model::{EntityKind, EntityRole, ModelPart, MultiplierRequest, Named, Rates, SolverInfo, named};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registered_kind;
 use crate::registry::{self, Registered};
 
 use crate::strategies::{
-    BodyBalance, Builder, BuilderEntry, CentralDifferences, ConvergenceCriterion, CriterionEntry, CriterionRequest,
-    ExplicitSettings, ExplicitStrategy, LineSearch, LinearSolverRequest, NewtonSettings, Scheme, SchemeEntry,
-    SchemeFactory, SchemeRequest, SolutionStrategy, StrategyEntry, StrategyRequest, frugal_linear_solver,
+    BodyBalance, BuilderAction, BuilderEntry, CentralDifferences, ConvergenceCriterion, CriterionEntry,
+    CriterionRequest, ExplicitSettings, ExplicitStrategy, LineSearch, LinearSolverRequest, NewtonSettings, Scheme,
+    SchemeEntry, SchemeFactory, SchemeRequest, SolutionStrategy, StrategyEntry, StrategyRequest, frugal_linear_solver,
     linear_tolerance, make_linear_solver, multipliers,
 };
 
@@ -456,8 +456,8 @@ impl SolverSettings {
         let strategy = self.named::<StrategyEntry>(STRATEGY)?;
         let builder = self.named::<BuilderEntry>(BUILDER)?;
         let (solver, replaceable) = match builder.build {
-            Builder::Direct => (solver, true),
-            Builder::Around(make) => (make(&self.settings, solver)?, false),
+            BuilderAction::Direct => (solver, true),
+            BuilderAction::Around(make) => (make(&self.settings, solver)?, false),
         };
         let search_after_failure =
             self.settings.node().get("line_search_after_failure").map_or(Ok(false), Node::bool)?;
@@ -579,7 +579,7 @@ pub fn flatten_bars(part: &mut ModelPart, domain_size: usize, report: &mut Repor
         for at in 0..table.len() {
             let entry = table.kinds[at];
             let dim = entry.cell.map_or(3, |cell| cell.cell().dim);
-            let is_same = entry.space == 3 && (dim == 0 || dim == 1 && entry.role == Role::Element);
+            let is_same = entry.space == 3 && (dim == 0 || dim == 1 && entry.role == EntityRole::Element);
             let Some(flat) = is_same.then(|| entry.name.replacen("3D", "2D", 1)) else { continue };
             let Some(flat) = find_kind(entry.role, &flat) else { continue };
             table.kinds[at] = flat;

@@ -1,6 +1,6 @@
 //! The threads of a run, as many as its address space carries.
 
-use zelus_linear_algebra::{address_space, parallel::Pool};
+use zelus_linear_algebra::{address_space, parallel::ThreadPool};
 
 use crate::communication::{cores, fair_threads};
 use crate::diagnostics::{Diagnostic, Error, Result};
@@ -13,7 +13,7 @@ const MOST: usize = 1024;
 ///
 /// # Errors
 /// [`Error::System`] when not one thread fits, or none can be started.
-pub(super) fn pool(wanted: Option<usize>) -> Result<(Pool, Option<Diagnostic>)> {
+pub(super) fn pool(wanted: Option<usize>) -> Result<(ThreadPool, Option<Diagnostic>)> {
     let asked = wanted.unwrap_or_else(fair_threads);
     let wanted = if asked == 0 { cores() } else { asked };
     if wanted > MOST {
@@ -31,7 +31,7 @@ pub(super) fn pool(wanted: Option<usize>) -> Result<(Pool, Option<Diagnostic>)> 
             "{fact}\n    raise the limit; what is reserved and not used takes no memory"
         )));
     }
-    let pool = Pool::new(if fitting < wanted { fitting } else { asked });
+    let pool = ThreadPool::new(if fitting < wanted { fitting } else { asked });
     let pool = pool.map_err(|error| Error::System(format!("cannot start threads: {error}")))?;
     let fewer = (fitting < wanted).then(|| {
         let mib = own >> 20;

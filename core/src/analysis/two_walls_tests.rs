@@ -7,15 +7,15 @@ use std::ops::Range;
 
 use zelus_linear_algebra::{DirectSettings, Engine, State, create, packed};
 
-use super::saved::Saved;
+use super::step_backup::StepBackup;
 use crate::assembly::{Assembler, Equations, System};
 use crate::diagnostics::Result;
 use crate::entities::{
-    ActiveSet, Coupling, EntityBlock, EntityError, Interaction, LocalSystems, LocalUnknown, Retry, SetChange, StepView,
-    Tangent, Want,
+    ActiveSet, Coupling, EntityBlock, EntityError, Interaction, LocalSystems, LocalUnknown, Request, Retry, SetChange,
+    StepView, Tangent,
 };
 use crate::model::test_variables::DISPLACEMENT;
-use crate::model::{Carriers, EntityKind, ModelPart, Nodes, Owner, Role};
+use crate::model::{DofOwners, EntityKind, EntityRole, ModelPart, Nodes, Owner};
 use crate::register_variable;
 use crate::registry::Entry;
 use crate::strategies::{
@@ -25,8 +25,8 @@ use crate::strategies::{
 register_variable! {
     WALL_PRESSURE: f64 = "Multiplier of the tests, positive in compression.";
 }
-static SPRINGS: EntityKind = EntityKind::new(Role::Element, Entry::new("TestSprings2D1N", file!(), line!()));
-static WALL: EntityKind = EntityKind::new(Role::Condition, Entry::new("TestWall2D1N", file!(), line!()));
+static SPRINGS: EntityKind = EntityKind::new(EntityRole::Element, Entry::new("TestSprings2D1N", file!(), line!()));
+static WALL: EntityKind = EntityKind::new(EntityRole::Condition, Entry::new("TestWall2D1N", file!(), line!()));
 
 const STIFFNESS: [[f64; 2]; 2] = [[4.0, 1.0], [1.0, 3.0]];
 /// Load at time 1.
@@ -75,7 +75,7 @@ impl EntityBlock for Springs {
         &self,
         view: &StepView<'_>,
         range: Range<usize>,
-        _: Want,
+        _: Request,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         for (slot, at) in range.enumerate() {
@@ -128,7 +128,7 @@ impl EntityBlock for WallBlock {
         &self.unknowns
     }
     fn tangent(&self) -> Tangent {
-        Tangent::General
+        Tangent::Unsymmetric
     }
     fn is_active(&self, _: usize, _: &StepView<'_>) -> bool {
         true
@@ -137,7 +137,7 @@ impl EntityBlock for WallBlock {
         &self,
         view: &StepView<'_>,
         range: Range<usize>,
-        want: Want,
+        request: Request,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         for (slot, wall) in range.enumerate() {
@@ -145,7 +145,7 @@ impl EntityBlock for WallBlock {
             let (lhs, rhs) = out.entity(slot);
             (0..2).for_each(|c| rhs[c] = -pressure * normal[c]);
             rhs[2] = if pressed { -Self::penetration(view, wall) } else { -pressure };
-            if want == Want::Both {
+            if request == Request::Both {
                 (0..2).for_each(|c| lhs[3 * c + 2] = normal[c]);
                 match pressed {
                     true => (0..2).for_each(|c| lhs[6 + c] = normal[c]),
@@ -185,8 +185,8 @@ impl Interaction for Walls {
 }
 
 impl Coupling for Walls {
-    fn unknowns(&self, _: &ModelPart) -> Vec<Carriers> {
-        vec![Carriers::of_slaves(WALL_PRESSURE.scalar(), self.block.slaves.as_flattened().to_vec())]
+    fn unknowns(&self, _: &ModelPart) -> Vec<DofOwners> {
+        vec![DofOwners::of_slaves(WALL_PRESSURE.scalar(), self.block.slaves.as_flattened().to_vec())]
     }
     fn blocks(&self) -> Vec<&dyn EntityBlock> {
         vec![&self.block]
@@ -226,13 +226,13 @@ fn mesh() -> ModelPart {
     part
 }
 
-struct Run {
+struct TestRun {
     part: ModelPart,
     system: System,
     newton: NewtonRaphson,
 }
 
-impl Run {
+impl TestRun {
     fn new(mut part: ModelPart, walls: bool) -> Self {
         let mut system = System { elements: vec![Box::new(Springs(displacements()))], ..System::default() };
         if walls {
@@ -272,7 +272,7 @@ impl Run {
 
     fn step(&mut self, time: f64) {
         assert!(self.attempt(time), "the step to {time} does not converge");
-        self.newton.accept_step(&mut self.part, &mut self.system).expect("an accepted step");
+        self.newton.finalize_step(&mut self.part, &mut self.system).expect("an accepted step");
     }
 
     fn displacement(&self) -> [f64; 2] {
@@ -290,7 +290,7 @@ fn assert_near(found: [f64; 2], expected: [f64; 2]) {
 
 #[test]
 fn a_node_in_a_corner_has_the_pressure_of_each_wall() {
-    let mut run = Run::new(mesh(), true);
+    let mut run = TestRun::new(mesh(), true);
     assert_eq!(run.system.dofs.layout().0[1].1[2..], ["WALL_PRESSURE of right", "WALL_PRESSURE of top"]);
     run.step(0.4);
     assert_near(run.displacement(), [0.4; 2]);
@@ -307,13 +307,13 @@ fn a_node_in_a_corner_has_the_pressure_of_each_wall() {
 
 #[test]
 fn a_restart_in_the_middle_gives_the_same_bits() {
-    let mut whole = Run::new(mesh(), true);
+    let mut whole = TestRun::new(mesh(), true);
     [0.4, 0.7].iter().for_each(|&time| whole.step(time));
     let file = |part: &ModelPart| packed::to_bytes(part).expect("numbers");
     let (saved, state) = (file(&whole.part), packed::to_bytes(&whole.newton.state()).expect("a state"));
     whole.step(1.0);
 
-    let mut resumed = Run::new(mesh(), true);
+    let mut resumed = TestRun::new(mesh(), true);
     let part: ModelPart = packed::from_bytes(&saved).expect("a part");
     part.check().expect("a part that can be");
     assert!(part.slave_nodes.is_alike(&resumed.part.slave_nodes));
@@ -330,15 +330,15 @@ fn a_restart_in_the_middle_gives_the_same_bits() {
 
 #[test]
 fn a_step_that_is_cut_finds_the_pressures_of_its_start() {
-    let mut run = Run::new(mesh(), true);
+    let mut run = TestRun::new(mesh(), true);
     run.step(0.7);
     let begin = run.part.clone();
-    let saved = Saved::of(&run.part, &mut run.system);
+    let saved = StepBackup::of(&run.part, &mut run.system);
     assert!(run.attempt(1.0));
     assert!(run.part.slave_nodes != begin.slave_nodes);
     saved.restore(&mut run.part, &mut run.system);
     assert!(run.part.nodes == begin.nodes && run.part.slave_nodes == begin.slave_nodes);
-    let mut straight = Run::new(mesh(), true);
+    let mut straight = TestRun::new(mesh(), true);
     straight.step(0.7);
     for run in [&mut run, &mut straight] {
         run.step(0.85);
@@ -353,7 +353,7 @@ fn a_step_that_is_cut_finds_the_pressures_of_its_start() {
 fn a_multiplier_is_fixed_where_its_mesh_node_is() {
     let mut part = mesh();
     part.nodes.set_fixed(WALL_PRESSURE.scalar(), &[NODE], true);
-    let mut run = Run::new(part, true);
+    let mut run = TestRun::new(part, true);
     let equations = Equations::new(&run.system.dofs, &run.part).expect("no constraints");
     assert_eq!((run.system.dofs.len(), equations.len()), (6, 2));
     run.step(1.0);
@@ -363,7 +363,7 @@ fn a_multiplier_is_fixed_where_its_mesh_node_is() {
 
 #[test]
 fn without_slave_nodes_nothing_is_numbered_for_them() {
-    let run = Run::new(mesh(), false);
+    let run = TestRun::new(mesh(), false);
     assert!(run.part.slave_nodes.is_empty());
     assert!(run.system.dofs.dofs().iter().all(|dof| dof.owner == Owner::Node(dof.node)));
     assert_eq!(run.system.dofs.len(), 4);

@@ -8,7 +8,7 @@
 mod assembly_seconds;
 mod bulk_tangent;
 mod bulk_traits;
-mod carriers;
+mod dof_owners;
 mod coupling_tangent;
 mod inertia;
 mod inertia_matrices;
@@ -16,11 +16,11 @@ mod infinite;
 mod load_tangent;
 mod massless;
 mod parallel_layout;
-mod ranks;
+mod rank_sums;
 mod reduced_matrix;
 mod residual;
 mod round_off;
-mod saved;
+mod assembler_state;
 mod shares;
 mod stamps;
 mod step_equations;
@@ -31,15 +31,15 @@ use std::time::Instant;
 
 use zelus_linear_algebra::{Csr, Layout, Symmetry};
 
+pub use assembler_state::AssemblerState;
 pub use assembly_seconds::AssemblySeconds;
 pub use inertia::{Inertia, damped_by_properties, strongest_damping};
-pub use saved::AssemblerState;
-pub use shares::Push;
+pub use shares::PairForce;
 pub use whole_system::WholeSystem;
 
 use self::bulk_tangent::BulkTangent;
-use self::carriers::carriers_of_blocks;
 use self::coupling_tangent::{CouplingTangent, couplings};
+use self::dof_owners::dof_owners_of_blocks;
 use self::inertia_matrices::InertiaMatrices;
 use self::load_tangent::LoadTangent;
 use self::parallel_layout::ParallelLayout;
@@ -49,7 +49,7 @@ use self::step_equations::StepEquations;
 use super::equations::Equations;
 use super::system::System;
 use crate::diagnostics::Result;
-use crate::model::{Carriers, ModelPart};
+use crate::model::{DofOwners, ModelPart};
 
 /// The system of one model part.
 #[derive(Default)]
@@ -79,8 +79,8 @@ pub struct Assembler {
 impl Assembler {
     /// Numbers the unknowns of the part and lays out the patterns that last.
     pub fn new(part: &ModelPart, system: &mut System, lumped_mass: bool) -> Self {
-        let carriers = carriers_of_blocks(part, system);
-        let multipliers: Vec<Vec<Carriers>> = couplings(system).map(|coupling| coupling.unknowns(part)).collect();
+        let carriers = dof_owners_of_blocks(part, system);
+        let multipliers: Vec<Vec<DofOwners>> = couplings(system).map(|coupling| coupling.unknowns(part)).collect();
         system.dofs.number(part, &carriers, &multipliers.concat());
         Self {
             bulk: BulkTangent::new(part, system),
@@ -126,7 +126,7 @@ impl Assembler {
             self.stamps.bulk_values += u64::from(changed);
             self.coupling.forget_graph();
         } else {
-            self.equations.update_leaning(equations);
+            self.equations.update_fixed_masters(equations);
         }
         self.stamps.coupling_graph += u64::from(self.coupling.lay_out(part, system));
         Ok(())

@@ -10,7 +10,7 @@ use super::local::{BATCH, add_rhs, entity_lhs, evaluate, side_by_side};
 use super::neighbours::Neighbours;
 use super::rows::{ROWS, fill_rows, starts};
 use crate::diagnostics::Result;
-use crate::entities::{EntityBlock, EntityError, LocalOwner, LocalSystems, LocalUnknown, StepView, Want};
+use crate::entities::{EntityBlock, EntityError, LocalOwner, LocalSystems, LocalUnknown, Request, StepView};
 use crate::model::Owner;
 
 /// Pattern over all unknowns: a row of node `a` holds the bulk unknowns of every node that shares an element with `a`.
@@ -37,7 +37,7 @@ struct Entity<'a> {
 }
 
 /// Unknowns of one node of an entity that stand side by side in every row.
-struct Run {
+struct AdjacentDofs {
     /// The first of them in the entity.
     first: usize,
     length: usize,
@@ -47,14 +47,14 @@ struct Run {
 
 impl Entity<'_> {
     /// Sets `runs` to those of the entity, without their places.
-    fn find_runs(&self, runs: &mut Vec<Run>) {
+    fn find_runs(&self, runs: &mut Vec<AdjacentDofs>) {
         runs.clear();
         for at in 0..self.numbers.len() {
             let follows =
                 |i: usize| self.unknowns[i].node == self.unknowns[at].node && self.numbers[i] + 1 == self.numbers[at];
             match runs.last_mut().filter(|_| follows(at - 1)) {
                 Some(run) => run.length += 1,
-                None => runs.push(Run { first: at, length: 1, place: 0 }),
+                None => runs.push(AdjacentDofs { first: at, length: 1, place: 0 }),
             }
         }
     }
@@ -123,7 +123,7 @@ impl BulkPattern {
     fn add_entity(
         &self,
         entity: &Entity<'_>,
-        runs: &mut [Run],
+        runs: &mut [AdjacentDofs],
         lhs: &[f64],
         rows: &Range<usize>,
         base: usize,
@@ -137,7 +137,7 @@ impl BulkPattern {
                 runs.iter_mut().for_each(|run| run.place = self.place(node, entity, run.first));
             }
             let sums = &mut part[self.matrix.row_starts[row as usize] - base..];
-            for &Run { first, length, place } in &*runs {
+            for &AdjacentDofs { first, length, place } in &*runs {
                 let (sums, values) = (&mut sums[place..place + length], &line[first..first + length]);
                 // A length that is known makes no loop.
                 match (<&mut [f64; 3]>::try_from(&mut *sums), <&[f64; 3]>::try_from(values)) {
@@ -169,7 +169,7 @@ impl BulkPattern {
         let mut buffers = Vec::new();
         for begin in (0..block.len()).step_by(BATCH) {
             let range = begin..(begin + BATCH).min(block.len());
-            let chunks = &*evaluate(range.clone(), size, Want::Both, compute, &mut buffers)?;
+            let chunks = &*evaluate(range.clone(), size, Request::Both, compute, &mut buffers)?;
             // Rows of each entity, from the first to the last.
             let reach = |at| numbers_of(at).iter().fold([u32::MAX, 0], |[a, b], &n| [a.min(n), b.max(n)]);
             let reaches: Vec<[u32; 2]> = range.clone().map(reach).collect();
@@ -225,15 +225,15 @@ pub fn add_residual(
     block: &dyn EntityBlock,
     numbers: &[u32],
     view: &StepView<'_>,
-    want: Want,
+    request: Request,
     rhs: &mut [f64],
 ) -> Result<(), EntityError> {
     let size = block.unknowns().len();
-    let compute = |range, out: &mut LocalSystems| block.local_systems(view, range, want, out);
+    let compute = |range, out: &mut LocalSystems| block.local_systems(view, range, request, out);
     let mut buffers = Vec::new();
     for begin in (0..block.len()).step_by(BATCH) {
         let range = begin..(begin + BATCH).min(block.len());
-        let chunks = evaluate(range, size, want, &compute, &mut buffers)?;
+        let chunks = evaluate(range, size, request, &compute, &mut buffers)?;
         add_rhs(chunks, numbers, begin, size, rhs);
     }
     Ok(())

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use zelus_linear_algebra::Unknowns;
 use zelus_linear_algebra::vector::zeros;
 
-use crate::model::{Carriers, ColumnOf, Field, ModelPart, Owner, Rates, ScalarVariable};
+use crate::model::{ColumnOf, DofOwners, Field, ModelPart, Owner, Rates, ScalarVariable};
 use crate::names::{Name, lasting};
 
 /// "Not an unknown of the system" in the table of numbers.
@@ -59,7 +59,7 @@ fn moves_mesh(unknown: ScalarVariable) -> bool {
 
 /// Numbers of the unknowns of one variable by owner; [`NONE`] where an owner has none.
 #[derive(Debug, Clone)]
-struct Numbers {
+struct VariableNumbers {
     nodes: Vec<u32>,
     slaves: Vec<u32>,
 }
@@ -90,7 +90,7 @@ pub struct DofTable {
     kinds: Vec<u16>,
     /// Mask of variables that are Lagrange multipliers.
     multipliers: Vec<bool>,
-    numbers: BTreeMap<ScalarVariable, Numbers>,
+    numbers: BTreeMap<ScalarVariable, VariableNumbers>,
     /// Names of the sets of slave nodes.
     sets: Vec<Name>,
     /// Set of each slave node.
@@ -103,7 +103,7 @@ impl DofTable {
     ///
     /// At a mesh node its own unknowns come first, then those of each slave node there in ascending order, each time in the
     /// order in which the variables are given.
-    pub fn number(&mut self, part: &ModelPart, primary: &[Carriers], multipliers: &[Carriers]) {
+    pub fn number(&mut self, part: &ModelPart, primary: &[DofOwners], multipliers: &[DofOwners]) {
         struct Present {
             variable: ScalarVariable,
             multiplier: bool,
@@ -132,7 +132,7 @@ impl DofTable {
         let kinds: Vec<u16> = present.iter().map(|own| place(own.variable) as u16).collect();
         self.multipliers = ordered.iter().map(|(_, is)| *is).collect();
         let moving: Vec<bool> = present.iter().map(|own| moves_mesh(own.variable)).collect();
-        let mut numbers = vec![Numbers { nodes: vec![NONE; nodes], slaves: vec![NONE; slaves] }; present.len()];
+        let mut numbers = vec![VariableNumbers { nodes: vec![NONE; nodes], slaves: vec![NONE; slaves] }; present.len()];
         let mut add = |at: usize, node: u32, owner: Owner| {
             let Present { variable, multiplier, .. } = present[at];
             let number = match owner {
@@ -367,8 +367,8 @@ mod tests {
         let wall = part.slave_nodes.set("wall", &[1]);
         part.slave_nodes.history.add(&NORMAL);
         let mut dofs = DofTable::default();
-        let displacements = [0, 1].map(|c| Carriers::of_nodes(DISPLACEMENT.component(c), vec![0, 1, 2]));
-        let multipliers = [floor, wall].map(|range| Carriers::of_slaves(NORMAL.component(0), range));
+        let displacements = [0, 1].map(|c| DofOwners::of_nodes(DISPLACEMENT.component(c), vec![0, 1, 2]));
+        let multipliers = [floor, wall].map(|range| DofOwners::of_slaves(NORMAL.component(0), range));
         dofs.number(&part, &displacements, &multipliers);
         (part, dofs)
     }
@@ -420,7 +420,7 @@ mod tests {
     fn numbers_of_mesh_nodes_alone_stay() {
         let mut part = part();
         let mut dofs = DofTable::default();
-        let carriers = |variable, nodes: &[u32]| Carriers::of_nodes(variable, nodes.to_vec());
+        let carriers = |variable, nodes: &[u32]| DofOwners::of_nodes(variable, nodes.to_vec());
         let displacements = [0, 1].map(|c| carriers(DISPLACEMENT.component(c), &[0, 1, 2]));
         let multipliers = [carriers(NORMAL.component(0), &[2, 1])];
         dofs.number(&part, &displacements, &multipliers);

@@ -17,16 +17,16 @@ use crate::model::{MasterSlaveConstraint, ModelPart};
 
 /// Role of an unknown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-enum Role {
+enum DofRole {
     Free(u32),
     Fixed,
     /// Follows equations.
-    Slave(Vec<Follow>),
+    Slave(Vec<MasterTerm>),
 }
 
 /// An equation that a slave follows.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct Follow {
+struct MasterTerm {
     equation: u32,
     /// Factor of its motion.
     weight: f64,
@@ -36,7 +36,7 @@ struct Follow {
 
 /// A fixed unknown that a slave leans on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Leaning {
+pub(super) struct FixedMaster {
     fixed: u32,
     slave: u32,
     /// Share of the slave's force.
@@ -46,7 +46,7 @@ pub(super) struct Leaning {
 /// The map between unknowns and equations.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Equations {
-    roles: Vec<Role>,
+    roles: Vec<DofRole>,
     /// Unknown of each equation.
     #[serde(skip)]
     free: Vec<u32>,
@@ -56,7 +56,7 @@ pub struct Equations {
     symmetric: bool,
     /// Contributions of constraints to fixed unknowns.
     #[serde(skip)]
-    pub(super) leaning: Vec<Leaning>,
+    pub(super) leaning: Vec<FixedMaster>,
     /// Meaning of the equations.
     #[serde(skip)]
     pub layout: Layout,
@@ -98,10 +98,10 @@ impl Equations {
             !slaves.contains_key(&(number as u32)) && !nodes.is_fixed(dof.variable, dof.node)
         };
         let is_free: Vec<bool> = parallel::map(dofs.len(), ROWS, is_free);
-        let mut roles = vec![Role::Fixed; dofs.len()];
+        let mut roles = vec![DofRole::Fixed; dofs.len()];
         let mut free = Vec::with_capacity(dofs.len());
         for number in (0..dofs.len()).filter(|&number| is_free[number]) {
-            roles[number] = Role::Free(free.len() as u32);
+            roles[number] = DofRole::Free(free.len() as u32);
             free.push(number as u32);
         }
         let mut leaning = Vec::new();
@@ -109,18 +109,18 @@ impl Equations {
             let mut terms = BTreeMap::new();
             follow(number, [1.0; 2], &slaves, dofs, part, 0, &mut terms)?;
             let (node, variable) = constraint.slave;
-            let is_free = |master: &u32| matches!(roles[*master as usize], Role::Free(_));
+            let is_free = |master: &u32| matches!(roles[*master as usize], DofRole::Free(_));
             if constraint.set.is_none() && nodes.is_fixed(variable, node) && terms.keys().any(is_free) {
                 return Err(supported_slave(constraint, nodes.ids[node as usize]).into());
             }
             let mut follows = Vec::with_capacity(terms.len());
             for (master, [weight, force]) in terms {
                 match roles[master as usize] {
-                    Role::Free(equation) => follows.push(Follow { equation, weight, force }),
-                    _ => leaning.push(Leaning { fixed: master, slave: number, force }),
+                    DofRole::Free(equation) => follows.push(MasterTerm { equation, weight, force }),
+                    _ => leaning.push(FixedMaster { fixed: master, slave: number, force }),
                 }
             }
-            roles[number as usize] = Role::Slave(follows);
+            roles[number as usize] = DofRole::Slave(follows);
         }
         let layout = Layout {
             node: parallel::map(free.len(), ROWS, |at| dofs.dofs()[free[at] as usize].node),
@@ -173,12 +173,12 @@ impl Equations {
 
     /// Whether an unknown is prescribed.
     pub fn is_fixed(&self, number: usize) -> bool {
-        self.roles[number] == Role::Fixed
+        self.roles[number] == DofRole::Fixed
     }
 
     /// Whether an unknown is solved for.
     pub fn is_free(&self, number: usize) -> bool {
-        matches!(self.roles[number], Role::Free(_))
+        matches!(self.roles[number], DofRole::Free(_))
     }
 
     /// Tᵀ v: a vector over unknowns gathered on equations.
@@ -186,7 +186,7 @@ impl Equations {
         let mut out: Vec<f64> = parallel::map(self.free.len(), ROWS, |at| full[self.free[at] as usize]);
         if self.has_slaves {
             for (role, value) in self.roles.iter().zip(full) {
-                if let Role::Slave(terms) = role {
+                if let DofRole::Slave(terms) = role {
                     terms.iter().for_each(|term| out[term.equation as usize] += term.force * value);
                 }
             }
@@ -216,10 +216,10 @@ impl Equations {
 
     /// T v: increments of the equations spread to all unknowns; fixed ones get zero.
     pub fn expand(&self, reduced: &[f64]) -> Vec<f64> {
-        let value = |role: &Role| match role {
-            Role::Free(equation) => reduced[*equation as usize],
-            Role::Fixed => 0.0,
-            Role::Slave(terms) => terms.iter().map(|term| term.weight * reduced[term.equation as usize]).sum(),
+        let value = |role: &DofRole| match role {
+            DofRole::Free(equation) => reduced[*equation as usize],
+            DofRole::Fixed => 0.0,
+            DofRole::Slave(terms) => terms.iter().map(|term| term.weight * reduced[term.equation as usize]).sum(),
         };
         parallel::map(self.roles.len(), ROWS, |number| value(&self.roles[number]))
     }
@@ -239,7 +239,7 @@ impl Equations {
             return;
         }
         let equation: Vec<u32> =
-            self.roles.iter().map(|role| if let Role::Free(equation) = role { *equation } else { NONE }).collect();
+            self.roles.iter().map(|role| if let DofRole::Free(equation) = role { *equation } else { NONE }).collect();
         let columns_of = |row: usize| full.columns_of(self.free[row] as usize).iter().map(|&c| equation[c as usize]);
         if !same_pattern {
             let count = |row: usize| columns_of(row).filter(|&to| to != NONE).count();
@@ -260,24 +260,24 @@ impl Equations {
 
     /// Whether a constrained unknown has entries; the pattern is symmetric.
     fn touches_slaves(&self, full: &Csr) -> bool {
-        let slaves = self.roles.iter().enumerate().filter(|(_, role)| matches!(role, Role::Slave(_)));
+        let slaves = self.roles.iter().enumerate().filter(|(_, role)| matches!(role, DofRole::Slave(_)));
         slaves.map(|(row, _)| full.columns_of(row)).any(|columns| !columns.is_empty())
     }
 
-    fn terms<'a>(&'a self, number: usize, one: &'a mut [Follow; 1]) -> &'a [Follow] {
+    fn terms<'a>(&'a self, number: usize, one: &'a mut [MasterTerm; 1]) -> &'a [MasterTerm] {
         match &self.roles[number] {
-            Role::Free(equation) => {
-                one[0] = Follow { equation: *equation, weight: 1.0, force: 1.0 };
+            DofRole::Free(equation) => {
+                one[0] = MasterTerm { equation: *equation, weight: 1.0, force: 1.0 };
                 &one[..]
             }
-            Role::Fixed => &[],
-            Role::Slave(terms) => terms,
+            DofRole::Fixed => &[],
+            DofRole::Slave(terms) => terms,
         }
     }
 
     fn reduce_constrained(&self, full: &Csr, values: &[f64]) -> Csr {
         let mut triplets = Vec::with_capacity(full.entries());
-        let none = Follow { equation: 0, weight: 0.0, force: 0.0 };
+        let none = MasterTerm { equation: 0, weight: 0.0, force: 0.0 };
         let (mut left, mut right) = ([none], [none]);
         for row in 0..full.rows {
             let columns = full.columns_of(row);
@@ -361,7 +361,7 @@ pub fn impose_constraints(part: &mut ModelPart) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Carriers, ModelPart, Nodes, test_variables::DISPLACEMENT};
+    use crate::model::{DofOwners, ModelPart, Nodes, test_variables::DISPLACEMENT};
 
     /// Three nodes on a line, some of them fixed; the last follows the others by halves and passes its force on as `forces` say.
     fn equations(fixed: &[u32], forces: Option<Vec<f64>>) -> Equations {
@@ -370,7 +370,7 @@ mod tests {
         let x = DISPLACEMENT.component(0);
         part.nodes.history.add(&DISPLACEMENT);
         let mut dofs = DofTable::default();
-        dofs.number(&part, &[Carriers::of_nodes(x, vec![0, 1, 2])], &[]);
+        dofs.number(&part, &[DofOwners::of_nodes(x, vec![0, 1, 2])], &[]);
         part.nodes.set_fixed(x, fixed, true);
         let masters = vec![((0, x), 0.5), ((1, x), 0.5)];
         let constraint =

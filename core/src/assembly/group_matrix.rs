@@ -8,7 +8,7 @@ use super::bulk_matrix::block_numbers;
 use super::dof_table::DofTable;
 use super::local::{batches_of_runs, each_of_runs, own_runs, side_by_side};
 use super::neighbours::Neighbours;
-use crate::entities::{EntityBlock, EntityError, StepView, Want};
+use crate::entities::{EntityBlock, EntityError, Request, StepView};
 
 /// A matrix over all unknowns whose rows are empty except where its blocks act.
 #[derive(Debug, Clone, Default)]
@@ -19,24 +19,29 @@ pub struct GroupMatrix {
     /// Entities of each block that are evaluated here.
     runs: Vec<Vec<Range<usize>>>,
     /// Unknowns that only the blocks of the group touch, if any does.
-    lonely: Vec<u32>,
+    multipliers: Vec<u32>,
 }
 
 impl GroupMatrix {
-    /// The pattern of these blocks; unknowns of `lonely` that nothing touches get a diagonal entry.
+    /// The pattern of these blocks; unknowns of `multipliers` that nothing touches get a diagonal entry.
     ///
     /// `is_own` says of the nodes of an entity whether it is evaluated here.
-    pub fn new(dofs: &DofTable, blocks: &[&dyn EntityBlock], lonely: &[u32], is_own: impl Fn(&[u32]) -> bool) -> Self {
+    pub fn new(
+        dofs: &DofTable,
+        blocks: &[&dyn EntityBlock],
+        multipliers: &[u32],
+        is_own: impl Fn(&[u32]) -> bool,
+    ) -> Self {
         let numbers: Vec<Vec<u32>> = blocks.iter().map(|block| block_numbers(*block, dofs)).collect();
         let runs: Vec<Vec<Range<usize>>> =
             blocks.iter().map(|block| own_runs(block.len(), |at| is_own(block.nodes(at)))).collect();
-        let mut groups: Vec<&[u32]> = lonely.chunks_exact(1).collect();
+        let mut groups: Vec<&[u32]> = multipliers.chunks_exact(1).collect();
         for ((block, numbers), runs) in blocks.iter().zip(&numbers).zip(&runs) {
             let size = block.unknowns().len();
             groups.extend(runs.iter().flat_map(Clone::clone).map(|at| &numbers[at * size..(at + 1) * size]));
         }
         let Neighbours { starts, list } = Neighbours::new(dofs.len(), &groups, |_| false);
-        Self { matrix: Csr::from_sorted_pattern(starts, list), numbers, runs, lonely: lonely.to_vec() }
+        Self { matrix: Csr::from_sorted_pattern(starts, list), numbers, runs, multipliers: multipliers.to_vec() }
     }
 
     /// Evaluates the entities of `blocks` and hands on, in their order, the place of each one's block, its place there, its
@@ -45,12 +50,12 @@ impl GroupMatrix {
         &self,
         blocks: &[&dyn EntityBlock],
         view: &StepView<'_>,
-        want: Want,
+        request: Request,
         mut add: impl FnMut(usize, usize, &[u32], &[f64], &[f64]),
     ) -> Result<(), EntityError> {
         for (place, ((block, numbers), runs)) in blocks.iter().zip(&self.numbers).zip(&self.runs).enumerate() {
             let size = block.unknowns().len();
-            each_of_runs(*block, view, runs, want, |at, lhs, rhs| {
+            each_of_runs(*block, view, runs, request, |at, lhs, rhs| {
                 add(place, at, &numbers[at * size..(at + 1) * size], lhs, rhs);
             })?;
         }
@@ -82,7 +87,7 @@ impl GroupMatrix {
         view: &StepView<'_>,
         mut add: impl FnMut(usize, usize, &[u32], &[f64]),
     ) -> Result<(), EntityError> {
-        self.each(blocks, view, Want::Residual, |block, at, numbers, _, local| add(block, at, numbers, local))
+        self.each(blocks, view, Request::Residual, |block, at, numbers, _, local| add(block, at, numbers, local))
     }
 
     /// Recomputes the matrix.
@@ -98,7 +103,7 @@ impl GroupMatrix {
             let size = block.unknowns().len();
             let columns_of_entity = |at: usize| &numbers[at * size..(at + 1) * size];
             let rows_of = |at: usize| &columns_of_entity(at)[..block.equations()];
-            batches_of_runs(*block, view, runs, Want::Both, |batch| {
+            batches_of_runs(*block, view, runs, Request::Both, |batch| {
                 let active = || batch.iter().filter(|(at, ..)| block.is_active(*at, view));
                 let touched = active().flat_map(|(at, ..)| rows_of(*at)).copied();
                 side_by_side(row_starts, values, touched, |here, base, values| {
@@ -132,7 +137,7 @@ impl GroupMatrix {
 
     /// For each inactive unknown, whether its row has a nonzero entry.
     pub fn lonely_rows_in_use(&self) -> Vec<bool> {
-        self.lonely.iter().map(|&row| self.matrix.row(row as usize).1.iter().any(|v| *v != 0.0)).collect()
+        self.multipliers.iter().map(|&row| self.matrix.row(row as usize).1.iter().any(|v| *v != 0.0)).collect()
     }
 
     /// Sets the `diagonal` of each row of an inactive unknown that is not in use.
@@ -142,7 +147,7 @@ impl GroupMatrix {
         diagonals: impl Iterator<Item = f64>,
         is_own: impl Fn(usize) -> bool,
     ) {
-        for ((&number, in_use), diagonal) in self.lonely.iter().zip(in_use).zip(diagonals) {
+        for ((&number, in_use), diagonal) in self.multipliers.iter().zip(in_use).zip(diagonals) {
             let row = number as usize;
             if !in_use && is_own(row) {
                 self.matrix.add(row, row, diagonal);

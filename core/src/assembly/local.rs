@@ -5,7 +5,7 @@ use std::ops::Range;
 use zelus_linear_algebra::parallel;
 
 use super::rows::parts_of_rows;
-use crate::entities::{EntityBlock, EntityError, LocalSystems, StepView, Want};
+use crate::entities::{EntityBlock, EntityError, LocalSystems, Request, StepView};
 
 /// Entities whose local systems are held at a time.
 pub(super) const BATCH: usize = 512;
@@ -21,20 +21,20 @@ type Compute<'a> = &'a (dyn Fn(Range<usize>, &mut LocalSystems) -> Result<(), En
 pub(super) fn evaluate<'a>(
     range: Range<usize>,
     size: usize,
-    want: Want,
+    request: Request,
     compute: Compute<'_>,
     buffers: &'a mut Vec<LocalSystems>,
 ) -> Result<&'a mut [LocalSystems], EntityError> {
     let chunks: Vec<Range<usize>> =
         range.clone().step_by(CHUNK).map(|begin| begin..(begin + CHUNK).min(range.end)).collect();
-    evaluate_runs(&chunks, [size, size], want, compute, buffers)
+    evaluate_runs(&chunks, [size, size], request, compute, buffers)
 }
 
 /// Local systems, of so many rows and columns, of each of `runs`, which are no longer than [`CHUNK`].
 fn evaluate_runs<'a>(
     runs: &[Range<usize>],
     sizes: [usize; 2],
-    want: Want,
+    request: Request,
     compute: Compute<'_>,
     buffers: &'a mut Vec<LocalSystems>,
 ) -> Result<&'a mut [LocalSystems], EntityError> {
@@ -43,7 +43,7 @@ fn evaluate_runs<'a>(
     let mut done: Vec<(&mut LocalSystems, Result<(), EntityError>)> =
         systems.iter_mut().map(|out| (out, Ok(()))).collect();
     parallel::each_mut(&mut done, 1, |at, (out, result)| {
-        out.reset_rows(runs[at].len(), sizes, want);
+        out.reset_rows(runs[at].len(), sizes, request);
         *result = compute(runs[at].clone(), out);
     });
     done.into_iter().try_for_each(|(_, result)| result)?;
@@ -68,14 +68,14 @@ pub(super) fn batches_of_runs(
     block: &dyn EntityBlock,
     view: &StepView<'_>,
     runs: &[Range<usize>],
-    want: Want,
+    request: Request,
     mut take: impl FnMut(&[(usize, &[f64], &[f64])]),
 ) -> Result<(), EntityError> {
-    let compute = |range, out: &mut LocalSystems| block.local_systems(view, range, want, out);
+    let compute = |range, out: &mut LocalSystems| block.local_systems(view, range, request, out);
     let mut buffers = Vec::new();
     for batch in runs.chunks(BATCH / CHUNK) {
         let sizes = [block.equations(), block.unknowns().len()];
-        let systems = evaluate_runs(batch, sizes, want, &compute, &mut buffers)?;
+        let systems = evaluate_runs(batch, sizes, request, &compute, &mut buffers)?;
         let mut found = Vec::with_capacity(BATCH);
         for (run, systems) in batch.iter().zip(&*systems) {
             found.extend(run.clone().enumerate().map(|(slot, at)| (at, systems.lhs_of(slot), systems.rhs_of(slot))));
@@ -90,10 +90,10 @@ pub(super) fn each_of_runs(
     block: &dyn EntityBlock,
     view: &StepView<'_>,
     runs: &[Range<usize>],
-    want: Want,
+    request: Request,
     mut add: impl FnMut(usize, &[f64], &[f64]),
 ) -> Result<(), EntityError> {
-    batches_of_runs(block, view, runs, want, |batch| batch.iter().for_each(|&(at, lhs, rhs)| add(at, lhs, rhs)))
+    batches_of_runs(block, view, runs, request, |batch| batch.iter().for_each(|&(at, lhs, rhs)| add(at, lhs, rhs)))
 }
 
 /// Row ranges that are filled side by side.

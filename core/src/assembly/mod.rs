@@ -11,20 +11,21 @@ mod near_null_space;
 mod neighbours;
 mod nodal_vectors;
 mod numbering;
-mod reach;
+mod runaway_bound;
 mod redistribution;
 mod rows;
 mod supports;
 mod system;
 
 pub use assembler::{
-    Assembler, AssemblerState, AssemblySeconds, Inertia, Push, WholeSystem, damped_by_properties, strongest_damping,
+    Assembler, AssemblerState, AssemblySeconds, Inertia, PairForce, WholeSystem, damped_by_properties,
+    strongest_damping,
 };
 pub use distribution::Distribution;
 pub use dof_table::{Dof, DofTable, NONE};
 pub use equations::{Equations, impose_constraints};
-pub use near_null_space::{Place, near_null_space, near_null_space_of_all};
+pub use near_null_space::{DofPosition, near_null_space, near_null_space_of_all};
 pub use nodal_vectors::nodal_vectors;
 pub use numbering::Numbering;
-pub use reach::reach;
+pub use runaway_bound::runaway_bound;
 pub use system::System;

@@ -9,11 +9,11 @@ use crate::model::ScalarVariable;
 const ROTATIONS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
 /// The unknown of an equation and the initial position of its node; multipliers have none.
-pub type Place = Option<(ScalarVariable, [f64; 3])>;
+pub type DofPosition = Option<(ScalarVariable, [f64; 3])>;
 
 /// The near-null space of equations: for each vector field of the unknowns its translations and rotations, for each scalar
 /// one the constant. Entries of multipliers are zero.
-pub fn near_null_space(places: &[Place]) -> Vec<Vec<f64>> {
+pub fn near_null_space(places: &[DofPosition]) -> Vec<Vec<f64>> {
     let mut variables: Vec<ScalarVariable> = Vec::new();
     let (mut center, share) = ([0.0; 3], 1.0 / places.len() as f64);
     for (variable, at) in places.iter().flatten() {
@@ -26,7 +26,7 @@ pub fn near_null_space(places: &[Place]) -> Vec<Vec<f64>> {
 }
 
 /// The same for the places of each rank, which have some of `variables`: the motions are those of all together. Collective.
-pub fn near_null_space_of_all(ranks: &Ranks, variables: &[ScalarVariable], places: &[Place]) -> Vec<Vec<f64>> {
+pub fn near_null_space_of_all(ranks: &Ranks, variables: &[ScalarVariable], places: &[DofPosition]) -> Vec<Vec<f64>> {
     let has = |variable: &ScalarVariable| places.iter().flatten().any(|(other, _)| other == variable);
     let mut appear: Vec<bool> = variables.iter().map(has).collect();
     ranks.any_of(&mut appear);
@@ -37,7 +37,7 @@ pub fn near_null_space_of_all(ranks: &Ranks, variables: &[ScalarVariable], place
     motions(places, &variables.collect::<Vec<_>>(), [0, 1, 2].map(|axis| sums[axis] / sums[3].max(1.0)))
 }
 
-fn motions(places: &[Place], variables: &[ScalarVariable], center: [f64; 3]) -> Vec<Vec<f64>> {
+fn motions(places: &[DofPosition], variables: &[ScalarVariable], center: [f64; 3]) -> Vec<Vec<f64>> {
     let mut fields: Vec<(&'static str, [bool; 3], bool)> = Vec::new();
     for variable in variables {
         let field = match fields.iter_mut().find(|(column, ..)| *column == variable.column) {
@@ -52,7 +52,7 @@ fn motions(places: &[Place], variables: &[ScalarVariable], center: [f64; 3]) -> 
     let mut space = Vec::new();
     for (column, has, is_vector) in fields {
         let mut add = |value: &(dyn Fn(usize, &[f64; 3]) -> f64 + Sync)| {
-            let of = |place: &Place| match place {
+            let of = |place: &DofPosition| match place {
                 Some((variable, at)) if variable.column == column => value(variable.offset(), at),
                 _ => 0.0,
             };

@@ -2,7 +2,7 @@
 
 use super::local::{each_of_runs, own_runs};
 use crate::diagnostics::Result;
-use crate::entities::{EntityBlock, Want};
+use crate::entities::{EntityBlock, Request};
 use crate::model::{ModelPart, Variable};
 
 /// Adds up the right-hand sides of the active entities of `blocks` at the unknowns of `variable`: 3 numbers a node of the part,
@@ -26,7 +26,7 @@ pub fn nodal_vectors(
             .filter_map(|(row, at)| component(at.variable).map(|c| (row, usize::from(at.node), usize::from(c))))
             .collect();
         let acts = |at: usize| block.is_active(at, &view) && part.evaluates_pair(block.nodes(at));
-        each_of_runs(block, &view, &own_runs(block.len(), acts), Want::Residual, |at, _, rhs| {
+        each_of_runs(block, &view, &own_runs(block.len(), acts), Request::Residual, |at, _, rhs| {
             let nodes = block.nodes(at);
             rows.iter().for_each(|&(row, node, c)| out[3 * nodes[node] as usize + c] += rhs[row]);
         })

@@ -14,7 +14,7 @@ use zelus_linear_algebra::Csr;
 
 use super::dof_table::DofTable;
 use super::supports::supports;
-use crate::Carrier;
+use crate::StateMapper;
 use crate::entities::MasslessNodes;
 use crate::model::{ModelPart, Owner};
 
@@ -72,13 +72,13 @@ impl Redistribution {
             && known(unknowns, &self.unknowns)
     }
 
-    /// See [`State::carry`](crate::State::carry): the nodes are near surfaces, which all ranks have; unknowns are found anew.
-    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
-        carrier.nodes(&mut self.wanted.surface);
-        carrier.nodes(&mut self.wanted.near);
+    /// See [`State::remap`](crate::State::remap): the nodes are near surfaces, which all ranks have; unknowns are found anew.
+    pub(super) fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        mapper.nodes(&mut self.wanted.surface);
+        mapper.nodes(&mut self.wanted.near);
         for (node, below) in self.lasting.iter_mut().chain(&mut self.nodes) {
-            carrier.nodes(std::slice::from_mut(node));
-            carrier.node_list(below);
+            mapper.nodes(std::slice::from_mut(node));
+            mapper.node_list(below);
         }
         self.unknowns.clear();
     }
@@ -170,12 +170,12 @@ impl Redistribution {
             let excess = values[*number as usize] - extrapolated;
             row.iter().for_each(|&(column, mass)| out[column as usize] += mass * excess);
         }
-        self.hand_on(&mut out);
+        self.redistribute_forces(&mut out);
         out
     }
 
     /// Pᵀ f: forces on massless unknowns handed on to those below.
-    pub(super) fn hand_on(&self, forces: &mut [f64]) {
+    pub(super) fn redistribute_forces(&self, forces: &mut [f64]) {
         for (number, below) in &self.unknowns {
             let force = std::mem::take(&mut forces[*number as usize]);
             below.iter().for_each(|&(i, weight)| forces[i as usize] += weight * force);

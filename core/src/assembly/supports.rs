@@ -27,7 +27,7 @@ pub(super) fn supports(part: &ModelPart, nodes: &[u32], massless: &[u32], exact:
     if nodes.is_empty() {
         return Vec::new();
     }
-    let around = Around::of(part, nodes);
+    let around = NearbyElements::of(part, nodes);
     let is_massless = |node: u32| massless.binary_search(&node).is_ok();
     let mut out = Vec::new();
     for &node in nodes {
@@ -113,11 +113,11 @@ fn eigen(mut a: [[f64; 3]; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
 }
 
 /// The elements at the nodes near those without mass.
-struct Around {
+struct NearbyElements {
     elements: FxHashMap<u32, Vec<u32>>,
 }
 
-impl Around {
+impl NearbyElements {
     fn of(part: &ModelPart, nodes: &[u32]) -> Self {
         let mut near = vec![false; part.nodes.len()];
         nodes.iter().for_each(|&node| near[node as usize] = true);

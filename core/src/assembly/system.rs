@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::dof_table::DofTable;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::entities::{BlockRequest, EntityBlock, Interaction, block_factory, is_place};
-use crate::model::{EntityKind, EntityTable, ModelPart, Role};
+use crate::model::{EntityKind, EntityRole, EntityTable, ModelPart};
 
 /// Unknowns of a model part, the blocks over its entities, and the interactions between bodies.
 #[derive(Default)]
@@ -29,11 +29,11 @@ impl System {
     pub fn make_blocks(&mut self, part: &ModelPart) -> Result<()> {
         let mut report = Report::new();
         let mut both = [Vec::new(), Vec::new()];
-        let tables = [(Role::Element, &part.elements), (Role::Condition, &part.conditions)];
+        let tables = [(EntityRole::Element, &part.elements), (EntityRole::Condition, &part.conditions)];
         let still = (!part.info.solver.follower_loads).then(|| NodesOfSmallDisplacement::of(part));
         for (blocks, (role, table)) in both.iter_mut().zip(tables) {
             let is_own = |at: usize| part.evaluates(role, at);
-            let still = still.as_ref().filter(|_| role == Role::Condition);
+            let still = still.as_ref().filter(|_| role == EntityRole::Condition);
             let on_initial = |at: usize| still.is_some_and(|still| still.hold(table.nodes(at as u32)));
             for Group { entry, on_initial, members } in groups(table, is_own, on_initial) {
                 let Some(make) = block_factory(entry) else {
@@ -75,8 +75,8 @@ impl System {
     }
 
     /// The blocks over elements (or conditions).
-    pub fn blocks(&self, role: Role) -> &[Box<dyn EntityBlock>] {
-        if role == Role::Element { &self.elements } else { &self.conditions }
+    pub fn blocks(&self, role: EntityRole) -> &[Box<dyn EntityBlock>] {
+        if role == EntityRole::Element { &self.elements } else { &self.conditions }
     }
 }
 

@@ -67,12 +67,12 @@ pub enum Tangent {
     /// Depends on the state, symmetric.
     Symmetric,
     /// Depends on the state, not symmetric.
-    General,
+    Unsymmetric,
 }
 
 /// Requested parts of the local systems.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Want {
+pub enum Request {
     /// The right-hand side only: external minus internal forces.
     Residual,
     /// Tangent (minus the derivative of the right-hand side) and right-hand side.
@@ -98,17 +98,17 @@ pub struct LocalSystems {
 
 impl LocalSystems {
     /// Zeroed buffers for `count` entities of `size` unknowns.
-    pub fn reset(&mut self, count: usize, size: usize, want: Want) {
-        self.reset_rows(count, [size, size], want);
+    pub fn reset(&mut self, count: usize, size: usize, request: Request) {
+        self.reset_rows(count, [size, size], request);
     }
 
     /// Zeroed buffers for `count` entities whose tangents have so many rows and columns.
-    pub fn reset_rows(&mut self, count: usize, [rows, size]: [usize; 2], want: Want) {
+    pub fn reset_rows(&mut self, count: usize, [rows, size]: [usize; 2], request: Request) {
         (self.rows, self.size) = (rows, size);
         self.rhs.clear();
         self.rhs.resize(count * size, 0.0);
         self.lhs.clear();
-        self.lhs.resize(if want == Want::Both { count * rows * size } else { 0 }, 0.0);
+        self.lhs.resize(if request == Request::Both { count * rows * size } else { 0 }, 0.0);
     }
 
     /// Tangent of the `at`-th entity of the range, empty when not wanted.
@@ -244,16 +244,16 @@ pub trait EntityBlock: Send + Sync {
         &self,
         view: &StepView<'_>,
         range: Range<usize>,
-        want: Want,
+        request: Request,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError>;
 
-    /// Whether the block has external forces of its own in this step, and gives them apart ([`Want::External`]).
+    /// Whether the block has external forces of its own in this step, and gives them apart ([`Request::External`]).
     fn has_external(&self, _view: &StepView<'_>) -> bool {
         false
     }
 
-    /// Whether storage, as of heat, is part of the block's own equation, and it gives it apart ([`Want::Storage`]).
+    /// Whether storage, as of heat, is part of the block's own equation, and it gives it apart ([`Request::Storage`]).
     fn has_storage(&self) -> bool {
         false
     }
@@ -281,7 +281,7 @@ pub trait EntityBlock: Send + Sync {
     fn damping(&self, _view: &StepView<'_>, _range: Range<usize>, _out: &mut LocalSystems) {}
 
     /// Whether the `at`-th entity has a history, as one that yields does.
-    fn remembers(&self, _at: usize) -> bool {
+    fn has_history(&self, _at: usize) -> bool {
         false
     }
 
@@ -289,7 +289,7 @@ pub trait EntityBlock: Send + Sync {
     ///
     /// # Errors
     /// As [`EntityBlock::local_systems`].
-    fn accept_step(&mut self, _view: &StepView<'_>) -> Result<(), EntityError> {
+    fn finalize_step(&mut self, _view: &StepView<'_>) -> Result<(), EntityError> {
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State, packed, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, packed, stored_as_bytes};
 
 use super::block::EntityBlock;
 use crate::diagnostics::{Diagnostic, Result};
@@ -27,7 +27,7 @@ stored_as_bytes!(BlockState);
 #[typetag::serde(name = "entities")]
 impl State for BlockState {
     /// Entities go to other ranks by their ids.
-    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+    fn remap(&mut self, _mapper: &mut dyn StateMapper) {}
 }
 
 impl BlockState {
@@ -69,7 +69,7 @@ impl BlockState {
 ///
 /// # Errors
 /// Entities that no rank had; blocks whose state goes by no ids.
-pub(crate) fn regroup(
+pub(crate) fn repartition(
     blocks: &[Box<dyn EntityBlock>],
     of_ranks: Vec<Vec<Option<Box<dyn State>>>>,
 ) -> Result<Vec<Option<Box<dyn State>>>> {

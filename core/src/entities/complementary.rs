@@ -1,6 +1,6 @@
 //! Conditions of an interaction that are decided together, by one linear complementarity problem.
 
-use super::interaction::Outer;
+use super::interaction::OuterLoop;
 use crate::diagnostics::Result;
 use crate::model::{ModelPart, Owner, ScalarVariable};
 
@@ -35,10 +35,10 @@ pub trait Complementary {
     fn conditions(&self, part: &ModelPart) -> Vec<ComplementaryCondition>;
 
     /// Lets all conditions act, whatever has been decided on them.
-    fn let_all_act(&mut self);
+    fn activate_all(&mut self);
 
-    /// Lets those conditions act that did before [`Complementary::let_all_act`].
-    fn let_decided_act(&mut self);
+    /// Lets those conditions act that did before [`Complementary::activate_all`].
+    fn restore_decisions(&mut self);
 
     /// Decides on all conditions by their responses, without them one by one; gives a line for the log too, where they are decided
     /// together.
@@ -49,5 +49,5 @@ pub trait Complementary {
         &mut self,
         part: &mut ModelPart,
         responses: Option<&Responses>,
-    ) -> Result<(Outer, Option<String>)>;
+    ) -> Result<(OuterLoop, Option<String>)>;
 }

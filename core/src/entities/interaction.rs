@@ -10,7 +10,7 @@ use super::complementary::Complementary;
 use super::join::Join;
 use super::pair_state::PairState;
 use crate::diagnostics::{Diagnostic, Result};
-use crate::model::{Carriers, ModelPart};
+use crate::model::{DofOwners, ModelPart};
 
 /// Changes by the active-set update of an iteration.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -39,17 +39,17 @@ impl SetChange {
 
 /// Action after the iteration has converged.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Outer {
+pub enum OuterLoop {
     /// The step is solved.
     Done,
     /// Something was changed that the iteration must follow: an outer loop goes on.
-    Again,
+    Continue,
     /// Blocks were added that the state must obey too, and why: the iteration goes on with them.
-    Widened(String),
+    PairsAdded(String),
     /// The step is solved, but a shorter one would be better, and why.
-    Coarse(String),
+    StepTooLarge(String),
     /// The interaction's conditions are to be decided together, see [`ActiveSet::complementary`].
-    Together,
+    DecideTogether,
     /// The outer loop does not come to an end, and why.
     Failed(String),
 }
@@ -97,7 +97,7 @@ pub trait Interaction: Send + Sync {
     ///
     /// # Errors
     /// A geometry that cannot be computed with.
-    fn accept_step(&mut self, _part: &mut ModelPart) -> Result<()> {
+    fn finalize_step(&mut self, _part: &mut ModelPart) -> Result<()> {
         Ok(())
     }
 
@@ -205,7 +205,7 @@ pub trait Interaction: Send + Sync {
 pub trait Coupling {
     /// Lagrange multipliers it adds (beside the unknowns of elements), with the mesh nodes or slave nodes that own them;
     /// constant over the stage. The owners have the columns of their variables.
-    fn unknowns(&self, _part: &ModelPart) -> Vec<Carriers> {
+    fn unknowns(&self, _part: &ModelPart) -> Vec<DofOwners> {
         Vec::new()
     }
 
@@ -222,7 +222,7 @@ pub trait Coupling {
     fn graph_version(&self) -> u64;
 
     /// Diagonal and right-hand side for unknowns of [`Coupling::unknowns`] that no block touches now.
-    fn idle_diagonal(&self) -> f64 {
+    fn inactive_diagonal(&self) -> f64 {
         1.0
     }
 
@@ -265,11 +265,11 @@ pub trait ActiveSet {
     ///
     /// # Errors
     /// A geometry that cannot be computed with.
-    fn after_convergence(&mut self, _part: &mut ModelPart) -> Result<Outer> {
-        Ok(Outer::Done)
+    fn after_convergence(&mut self, _part: &mut ModelPart) -> Result<OuterLoop> {
+        Ok(OuterLoop::Done)
     }
 
-    /// Its conditions that one linear complementarity problem decides on; it asks for that by [`Outer::Together`].
+    /// Its conditions that one linear complementarity problem decides on; it asks for that by [`OuterLoop::DecideTogether`].
     fn complementary(&mut self) -> Option<&mut dyn Complementary> {
         None
     }

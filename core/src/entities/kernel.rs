@@ -10,17 +10,17 @@ use zelus_linear_algebra::{State, parallel};
 
 use super::assumed_small::AssumedSmall;
 use super::block::{
-    BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, NO_TRACTIONS, Tangent, Want,
+    BlockRequest, EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, NO_TRACTIONS, Request, Tangent,
 };
 use super::block_state::BlockState;
 use super::face_point::FacePoint;
 use super::view::StepView;
 use crate::diagnostics::{Diagnostic, Report, Result, unfit};
-use crate::model::{EntityKind, Properties, Role};
+use crate::model::{EntityKind, EntityRole, Properties};
 
 /// Data of its entity that a kernel gets, beside the step's fields.
 #[derive(Clone, Copy)]
-pub struct Gather<'a, const NODES: usize> {
+pub struct EntityView<'a, const NODES: usize> {
     /// Index of the entity in the model part's table.
     pub index: u32,
     /// Node indices.
@@ -33,7 +33,7 @@ pub struct Gather<'a, const NODES: usize> {
     pub current: [[f64; 3]; NODES],
 }
 
-impl<const NODES: usize> Gather<'_, NODES> {
+impl<const NODES: usize> EntityView<'_, NODES> {
     /// Three numbers a node of a vector column.
     pub fn vectors(&self, column: &[f64]) -> [[f64; 3]; NODES] {
         let mut out = [[0.0; 3]; NODES];
@@ -78,7 +78,7 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     ///
     /// # Errors
     /// Properties that the entity lacks, or an unusable geometry.
-    fn state(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Result<Self::State, String>;
+    fn state(&self, entity: &EntityView<'_, NODES>, view: &StepView<'_>) -> Result<Self::State, String>;
 
     /// How the tangent behaves.
     fn tangent(&self) -> Tangent;
@@ -89,10 +89,10 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     /// Why the entity cannot be computed, e.g. that it is inverted.
     fn local_system(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         state: &Self::State,
         view: &StepView<'_>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) -> Result<(), String>;
@@ -110,7 +110,7 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     /// Adds the mass matrix row by row; `false` when the kind has none.
     fn mass(
         &self,
-        _entity: &Gather<'_, NODES>,
+        _entity: &EntityView<'_, NODES>,
         _state: &Self::State,
         _view: &StepView<'_>,
         _lumped: bool,
@@ -125,10 +125,10 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     }
 
     /// Adds the constant damping matrix row by row, force per velocity.
-    fn damping(&self, _entity: &Gather<'_, NODES>, _state: &Self::State, _out: &mut [f64]) {}
+    fn damping(&self, _entity: &EntityView<'_, NODES>, _state: &Self::State, _out: &mut [f64]) {}
 
     /// Whether the entity has a history, as one that yields does.
-    fn remembers(&self, _state: &Self::State) -> bool {
+    fn has_history(&self, _state: &Self::State) -> bool {
         false
     }
 
@@ -138,7 +138,7 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     /// As [`Kernel::local_system`].
     fn accept(
         &self,
-        _entity: &Gather<'_, NODES>,
+        _entity: &EntityView<'_, NODES>,
         _state: &mut Self::State,
         _view: &StepView<'_>,
     ) -> Result<(), String> {
@@ -156,7 +156,7 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     /// A variable at the Gauss points.
     fn gauss(
         &self,
-        _entity: &Gather<'_, NODES>,
+        _entity: &EntityView<'_, NODES>,
         _state: &Self::State,
         _view: &StepView<'_>,
         _variable: &str,
@@ -175,12 +175,12 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     }
 
     /// See [`EntityBlock::assumed_small`].
-    fn assumed_small(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Option<AssumedSmall> {
+    fn assumed_small(&self, _entity: &EntityView<'_, NODES>, _view: &StepView<'_>) -> Option<AssumedSmall> {
         None
     }
 
     /// Reason why the entity cannot give the traction on its faces; `None` where [`Kernel::traction`] does.
-    fn lacks_tractions(&self, _entity: &Gather<'_, NODES>) -> Option<&'static str> {
+    fn lacks_tractions(&self, _entity: &EntityView<'_, NODES>) -> Option<&'static str> {
         Some(NO_TRACTIONS)
     }
 
@@ -190,7 +190,7 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     /// An entity that has none, or is inverted.
     fn traction(
         &self,
-        _entity: &Gather<'_, NODES>,
+        _entity: &EntityView<'_, NODES>,
         _point: &FacePoint,
         _displacements: &[[f64; 3]; NODES],
         _by: Option<&mut [[f64; 3]; SIZE]>,
@@ -228,14 +228,14 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> KernelBlock<
     }
 
     #[inline(always)]
-    fn gather<'a>(&'a self, at: usize, view: &StepView<'a>) -> Gather<'a, NODES> {
+    fn gather<'a>(&'a self, at: usize, view: &StepView<'a>) -> EntityView<'a, NODES> {
         let nodes = &self.nodes[at];
         let (mut initial, mut current) = ([[0.0; 3]; NODES], [[0.0; 3]; NODES]);
         for (i, &node) in nodes.iter().enumerate() {
             initial[i] = view.nodes.initial[node as usize];
             current[i] = view.nodes.current[node as usize];
         }
-        Gather {
+        EntityView {
             index: self.members.indices[at],
             nodes,
             properties: &view.properties[&self.members.properties[at]],
@@ -375,7 +375,7 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
     }
 
     fn is_active(&self, at: usize, view: &StepView<'_>) -> bool {
-        let table = if self.members.entry.role == Role::Element { view.elements } else { view.conditions };
+        let table = if self.members.entry.role == EntityRole::Element { view.elements } else { view.conditions };
         table.flags.is_active(self.members.indices[at] as usize)
     }
 
@@ -392,7 +392,7 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
         &self,
         view: &StepView<'_>,
         range: Range<usize>,
-        want: Want,
+        request: Request,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         for (slot, at) in range.enumerate() {
@@ -402,7 +402,7 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
             let (lhs, rhs) = out.entity(slot);
             let rhs = rhs.try_into().expect("buffer of SIZE rows");
             self.kernel
-                .local_system(&self.gather(at, view), &self.states[at], view, want, lhs, rhs)
+                .local_system(&self.gather(at, view), &self.states[at], view, request, lhs, rhs)
                 .map_err(|fact| self.error(at, view, fact))?;
         }
         Ok(())
@@ -445,11 +445,11 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
         }
     }
 
-    fn remembers(&self, at: usize) -> bool {
-        self.states.get(at).is_some_and(|state| self.kernel.remembers(state))
+    fn has_history(&self, at: usize) -> bool {
+        self.states.get(at).is_some_and(|state| self.kernel.has_history(state))
     }
 
-    fn accept_step(&mut self, view: &StepView<'_>) -> Result<(), EntityError> {
+    fn finalize_step(&mut self, view: &StepView<'_>) -> Result<(), EntityError> {
         if size_of::<K::State>() == 0 {
             return Ok(());
         }

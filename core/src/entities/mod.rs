@@ -17,17 +17,19 @@ mod registered;
 mod view;
 
 pub use assumed_small::AssumedSmall;
-pub use block::{BlockRequest, EntityBlock, EntityError, Gauss, LocalOwner, LocalSystems, LocalUnknown, Tangent, Want};
-pub(crate) use block_state::regroup;
+pub use block::{
+    BlockRequest, EntityBlock, EntityError, Gauss, LocalOwner, LocalSystems, LocalUnknown, Request, Tangent,
+};
+pub(crate) use block_state::repartition;
 pub use complementary::{Complementary, ComplementaryCondition, Responses};
 pub use constraint_entry::{ConstraintEntry, ConstraintFactory, ConstraintRow};
 pub use face_point::FacePoint;
 pub use interaction::{
-    ActiveSet, Coupling, FirstIterate, Follower, Interaction, Massless, MasslessNodes, Observer, Outer, Retry,
+    ActiveSet, Coupling, FirstIterate, Follower, Interaction, Massless, MasslessNodes, Observer, OuterLoop, Retry,
     SetChange,
 };
 pub use join::Join;
-pub use kernel::{Gather, Kernel, KernelBlock};
+pub use kernel::{EntityView, Kernel, KernelBlock};
 pub use pair_state::PairState;
 pub use registered::{
     BlockFactory, Build, ConditionEntry, ElementEntry, block_factory, block_kinds, find_kind, is_place, kind_names,

@@ -6,7 +6,7 @@ use super::block::{BlockRequest, EntityBlock};
 use crate::collect_kind;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::geometry::Shape;
-use crate::model::{EntityKind, KindFinder, Role};
+use crate::model::{EntityKind, EntityRole, KindFinder};
 use crate::registry::{self, Entry};
 
 /// Makes the block of entities of one kind.
@@ -36,7 +36,7 @@ macro_rules! entity_entry {
         impl $type {
             /// For [`crate::register`].
             pub const fn new(entry: Entry, build: Build) -> Self {
-                Self { kind: EntityKind::new(Role::$role, entry), build }
+                Self { kind: EntityKind::new(EntityRole::$role, entry), build }
             }
 
             /// Its reference cell.
@@ -104,10 +104,10 @@ entity_entry! {
 }
 
 /// The registered kind of that name or alias.
-pub fn find_kind(role: Role, name: &str) -> Option<&'static EntityKind> {
+pub fn find_kind(role: EntityRole, name: &str) -> Option<&'static EntityKind> {
     match role {
-        Role::Element => registry::find::<ElementEntry>(name).map(|entry| &**entry),
-        Role::Condition => registry::find::<ConditionEntry>(name).map(|entry| &**entry),
+        EntityRole::Element => registry::find::<ElementEntry>(name).map(|entry| &**entry),
+        EntityRole::Condition => registry::find::<ConditionEntry>(name).map(|entry| &**entry),
     }
 }
 
@@ -117,32 +117,32 @@ inventory::submit! { KindFinder(find_kind) }
 ///
 /// # Errors
 /// As [`registry::require`].
-pub fn require_kind(role: Role, name: &str) -> Result<&'static EntityKind, Diagnostic> {
+pub fn require_kind(role: EntityRole, name: &str) -> Result<&'static EntityKind, Diagnostic> {
     match role {
-        Role::Element => registry::require::<ElementEntry>(name).map(|entry| &**entry),
-        Role::Condition => registry::require::<ConditionEntry>(name).map(|entry| &**entry),
+        EntityRole::Element => registry::require::<ElementEntry>(name).map(|entry| &**entry),
+        EntityRole::Condition => registry::require::<ConditionEntry>(name).map(|entry| &**entry),
     }
 }
 
 /// Names and aliases of the registered kinds, sorted.
-pub fn kind_names(role: Role) -> Vec<&'static str> {
+pub fn kind_names(role: EntityRole) -> Vec<&'static str> {
     match role {
-        Role::Element => registry::names::<ElementEntry>(),
-        Role::Condition => registry::names::<ConditionEntry>(),
+        EntityRole::Element => registry::names::<ElementEntry>(),
+        EntityRole::Condition => registry::names::<ConditionEntry>(),
     }
 }
 
 /// Whether a kind is a place of the mesh without physics.
 pub fn is_place(kind: &EntityKind) -> bool {
-    kind.role == Role::Element
+    kind.role == EntityRole::Element
         && registry::find::<ElementEntry>(kind.name).is_some_and(|entry| matches!(entry.build, Build::Place))
 }
 
 /// Factory of blocks of a registered kind; `None` for one that is not registered, for pairs and for places.
 pub fn block_factory(kind: &EntityKind) -> Option<BlockFactory> {
     let build = match kind.role {
-        Role::Element => registry::find::<ElementEntry>(kind.name)?.build,
-        Role::Condition => registry::find::<ConditionEntry>(kind.name)?.build,
+        EntityRole::Element => registry::find::<ElementEntry>(kind.name)?.build,
+        EntityRole::Condition => registry::find::<ConditionEntry>(kind.name)?.build,
     };
     match build {
         Build::Block(make) => Some(make),

@@ -7,8 +7,8 @@ use std::fmt;
 
 use super::Shape;
 use super::nodal::Nodal;
-use super::pieces::pieces;
 use super::shape_formulas::{barycentric, linear, product, quadratic, quadratic_corner, quadratic_middle, serendipity};
+use super::sub_facets::sub_facets;
 use crate::scalar::{Dual, Real};
 use crate::vector3::{cross, dot, norm, normalised, sub, value};
 
@@ -43,7 +43,7 @@ pub struct FacetShape {
     /// Whether it is of second order, with nodes beside its corners.
     pub curved: bool,
     /// Its linear sub-facets, each by its nodes.
-    pub pieces: &'static [&'static [usize]],
+    pub sub_facets: &'static [&'static [usize]],
     /// Local coordinates of its centre.
     pub centre: [f64; 2],
     /// Length or area of the reference cell.
@@ -116,7 +116,7 @@ impl FacetShape {
             space,
             affine: nodes == space,
             curved: nodes > corners,
-            pieces: pieces(shape),
+            sub_facets: sub_facets(shape),
             centre: [cell.centre[0], cell.centre[1]],
             cell_size: cell.size(),
             points: cell.points,

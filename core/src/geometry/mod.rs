@@ -9,7 +9,7 @@ mod cells;
 mod nodal;
 mod facet_shape;
 pub mod mapping;
-mod pieces;
+mod sub_facets;
 mod quadrature;
 mod reference_cell;
 mod shape;
@@ -24,9 +24,9 @@ pub use facet_shape::{
     combine, interpolate,
 };
 pub use nodal::{MOST_FACET_NODES, Nodal};
-pub use pieces::{parts, pieces, reversed};
 pub use quadrature::{MAX_ORDER, QuadraturePoint, quadrature};
 pub use reference_cell::{Facet, ReferenceCell};
 pub use shape::Shape;
 pub use shape_functions::{local_gradients, shape_functions};
 pub use shape_table::ShapeTable;
+pub use sub_facets::{parts, reversed, sub_facets};

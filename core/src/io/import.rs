@@ -1,6 +1,6 @@
 //! From a mesh document to a model part: ids become indices, names become registered kinds and variables.
 
-use crate::model::Role;
+use crate::model::EntityRole;
 mod constraints;
 
 use std::collections::BTreeMap;
@@ -9,8 +9,8 @@ use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
-use super::mdpa::{self, DataBlock, DataColumn, DataEntry, DataValue, EntityBlock, EntityNames, Line, MdpaDocument};
-use super::variables::{kind_of, law_name, unknown_variable, without_effect};
+use super::mdpa::{self, DataBlock, DataColumn, DataEntry, DataValue, EntityNames, Line, MdpaDocument, MdpaEntities};
+use super::variable_names::{kind_of, law_name, unknown_variable, without_effect};
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::entities::{find_kind, kind_names, require_kind};
 use crate::geometry::Shape;
@@ -22,9 +22,9 @@ use crate::model::{
 
 /// Gives `read` the registered names that it must know.
 pub(super) fn entity_names<R>(read: impl FnOnce(&EntityNames) -> R) -> R {
-    let known = [kind_names(Role::Element), kind_names(Role::Condition)].concat();
+    let known = [kind_names(EntityRole::Element), kind_names(EntityRole::Condition)].concat();
     let nodes_of = |name: &str| {
-        let entry = find_kind(Role::Element, name).or_else(|| find_kind(Role::Condition, name));
+        let entry = find_kind(EntityRole::Element, name).or_else(|| find_kind(EntityRole::Condition, name));
         entry.map(|entry| entry.nodes()).or_else(|| shape_of_geometry(name).map(|(cell, _)| cell.nodes()))
     };
     read(&EntityNames { nodes_of: &nodes_of, known: &known, is_flag: &|name| flag(name).is_ok() })
@@ -155,10 +155,10 @@ impl Import<'_> {
     fn elements_and_conditions(&mut self, part: &mut ModelPart) {
         let ModelPart { nodes, elements, conditions, .. } = part;
         for (role, blocks, table) in [
-            (Role::Element, &self.document.elements, elements),
-            (Role::Condition, &self.document.conditions, conditions),
+            (EntityRole::Element, &self.document.elements, elements),
+            (EntityRole::Condition, &self.document.conditions, conditions),
         ] {
-            let mut rows: Vec<(u32, &EntityBlock, usize)> = Vec::new();
+            let mut rows: Vec<(u32, &MdpaEntities, usize)> = Vec::new();
             let mut entries = Vec::new();
             for block in blocks {
                 match require_kind(role, &block.name) {
@@ -180,7 +180,7 @@ impl Import<'_> {
     }
 
     fn geometries(&self, part: &mut ModelPart) {
-        let mut rows: Vec<(u32, &EntityBlock, usize)> = Vec::new();
+        let mut rows: Vec<(u32, &MdpaEntities, usize)> = Vec::new();
         for block in &self.document.geometries {
             rows.extend(block.ids.iter().enumerate().map(|(at, &id)| (id, block, at)));
         }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::given_materials::{GivenMaterials, is_part_of};
-use super::variables::{composed_law, kind_of, last_of_path, law_name, unknown_variable, without_effect};
+use super::variable_names::{composed_law, kind_of, last_of_path, law_name, unknown_variable, without_effect};
 use crate::diagnostics::{Diagnostic, Error, Place, Report, Result, did_you_mean};
 use crate::model::{MaterialRange, ModelPart, Properties, PropertyValue, Table, VariableKind};
 use crate::parameters::{Document, Node};

@@ -11,7 +11,7 @@ mod replace;
 pub mod results;
 #[cfg(test)]
 mod tests;
-pub(crate) mod variables;
+pub(crate) mod variable_names;
 
 pub(crate) use container::SAVED;
 pub use container::{SavedFile, write_saved};

@@ -15,7 +15,7 @@ const LABEL: usize = 40;
 const LEAST_SPACE: usize = 1 << 16;
 
 /// Folders with the bytes that were tried, and why they cannot be written there.
-type Tried = BTreeMap<(PathBuf, usize), std::result::Result<(), String>>;
+type WriteChecks = BTreeMap<(PathBuf, usize), std::result::Result<(), String>>;
 
 /// How a file that an earlier run has written is known: any other is not replaced. An empty file is nobody's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -170,7 +170,7 @@ fn can_be_written(
     file: &FileUse,
     whole: &Path,
     picture: usize,
-    folders: &mut Tried,
+    folders: &mut WriteChecks,
 ) -> std::result::Result<(), String> {
     if let (FileUse::Writes(..), Ok(found)) = (file, fs::metadata(whole))
         && !found.is_file()

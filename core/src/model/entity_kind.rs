@@ -10,14 +10,14 @@ use crate::registry::Entry;
 
 /// Table of a model part in which an entity stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Role {
+pub enum EntityRole {
     /// A piece of a body.
     Element,
     /// A piece of a boundary: a load or a contact pair.
     Condition,
 }
 
-impl Role {
+impl EntityRole {
     /// The word of `zelus list`.
     pub fn word(self) -> &'static str {
         match self {
@@ -32,7 +32,7 @@ pub struct EntityKind {
     /// Name, words and settings.
     pub entry: Entry,
     /// Element or condition.
-    pub role: Role,
+    pub role: EntityRole,
     /// Reference cell.
     pub cell: Option<Shape>,
     /// Dimensions of the space it lives in: 2 or 3; 0 where that does not matter.
@@ -51,7 +51,7 @@ pub struct EntityKind {
 
 impl EntityKind {
     /// A kind on no cell.
-    pub const fn new(role: Role, entry: Entry) -> Self {
+    pub const fn new(role: EntityRole, entry: Entry) -> Self {
         let (of_revolution, small_displacement) = (false, false);
         Self {
             entry,
@@ -93,13 +93,13 @@ impl PartialEq for EntityKind {
 }
 
 /// Finds the registered kinds; submitted by the module that holds the registry of entity blocks.
-pub struct KindFinder(pub fn(Role, &str) -> Option<&'static EntityKind>);
+pub struct KindFinder(pub fn(EntityRole, &str) -> Option<&'static EntityKind>);
 
 inventory::collect!(KindFinder);
 
 /// Writes kinds by name, each name once.
 pub(super) fn write_kinds<S: Serializer>(kinds: &[&'static EntityKind], to: S) -> Result<S::Ok, S::Error> {
-    let mut names: Vec<(Role, &str)> = kinds.iter().map(|kind| (kind.role, kind.name)).collect();
+    let mut names: Vec<(EntityRole, &str)> = kinds.iter().map(|kind| (kind.role, kind.name)).collect();
     names.sort_unstable();
     names.dedup();
     let place = |kind: &&EntityKind| names.binary_search(&(kind.role, kind.name)).expect("it is one of them") as u32;
@@ -109,8 +109,8 @@ pub(super) fn write_kinds<S: Serializer>(kinds: &[&'static EntityKind], to: S) -
 
 /// Reads the kinds that [`write_kinds`] has written.
 pub(super) fn read_kinds<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<&'static EntityKind>, D::Error> {
-    let (names, places) = <(Vec<(Role, String)>, Vec<u32>)>::deserialize(from)?;
-    let find = |(role, name): &(Role, String)| {
+    let (names, places) = <(Vec<(EntityRole, String)>, Vec<u32>)>::deserialize(from)?;
+    let find = |(role, name): &(EntityRole, String)| {
         let found = inventory::iter::<KindFinder>().find_map(|finder| finder.0(*role, name));
         found.ok_or_else(|| D::Error::custom(format!("there is no {} {name}", role.word())))
     };

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 /// The place of each id in a list, found when it is first asked for; a copy finds it anew.
 #[derive(Debug, Default)]
-pub(super) struct Index(OnceLock<Places>);
+pub(super) struct Index(OnceLock<IdTable>);
 
 /// No place.
 const NONE: u32 = u32::MAX;
@@ -14,7 +14,7 @@ const NONE: u32 = u32::MAX;
 const DENSE: (usize, usize) = (4, 1024);
 
 #[derive(Debug, Default)]
-struct Places {
+struct IdTable {
     count: usize,
     /// By id, or [`NONE`].
     listed: Vec<u32>,
@@ -22,7 +22,7 @@ struct Places {
     others: FxHashMap<usize, u32>,
 }
 
-impl Places {
+impl IdTable {
     fn insert(&mut self, id: usize, at: u32) {
         self.count += 1;
         if id >= DENSE.0 * self.count + DENSE.1 {
@@ -45,7 +45,7 @@ impl Index {
     /// The place of an id among `ids`, whose index this is.
     pub(super) fn find(&self, ids: &[usize], id: usize) -> Option<u32> {
         let places = self.0.get_or_init(|| {
-            let mut places = Places::default();
+            let mut places = IdTable::default();
             ids.iter().enumerate().for_each(|(at, &id)| places.insert(id, at as u32));
             places
         });

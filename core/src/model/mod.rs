@@ -4,7 +4,7 @@
 //! ([`Field`]) found by the name of their [`Variable`]. Nodes are stored in ascending order of id, so loops over indices
 //! run in the order in which the reference program loops over ids.
 
-mod bodies;
+mod connected_bodies;
 mod constraint;
 mod entity_kind;
 mod entity_table;
@@ -15,7 +15,7 @@ mod geometries;
 mod halo;
 mod index;
 mod interface_surface;
-mod joined;
+mod merged_part;
 mod level;
 mod model_part;
 mod multiplier_request;
@@ -24,10 +24,10 @@ mod owner;
 mod process_info;
 mod properties;
 mod rates;
-mod share;
+mod mesh_share;
 mod slave_nodes;
 mod solver_info;
-mod soundness;
+mod part_checks;
 mod step_mark;
 mod sub_part;
 mod table;
@@ -44,9 +44,9 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-pub use bodies::bodies_of_nodes;
+pub use connected_bodies::bodies_of_nodes;
 pub use constraint::{MasterSlaveConstraint, NodeUnknown};
-pub use entity_kind::{EntityKind, KindFinder, Role};
+pub use entity_kind::{EntityKind, EntityRole, KindFinder};
 pub use entity_table::EntityTable;
 pub use fields::{Field, Fields};
 pub use fixities::Fixities;
@@ -57,15 +57,15 @@ pub use interface_surface::InterfaceSurface;
 pub use level::Level;
 pub use material_range::MaterialRange;
 pub(crate) use mesh_box::mesh_box;
+pub use mesh_share::{MeshShare, MeshSizes};
 pub use model_part::{ModelPart, NodalState};
 pub use multiplier_request::MultiplierRequest;
 pub use nodes::Nodes;
 pub use numbered_bodies::NumberedBodies;
-pub use owner::{Carriers, Owner};
+pub use owner::{DofOwners, Owner};
 pub use process_info::ProcessInfo;
 pub use properties::{Properties, PropertyValue};
 pub use rates::{ColumnOf, FIRST, Rates, SECOND, UNKNOWN};
-pub use share::{MeshSizes, Share};
 pub use slave_nodes::SlaveNodes;
 pub use solver_info::SolverInfo;
 pub use step_mark::StepMark;

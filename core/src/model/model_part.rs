@@ -6,16 +6,16 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::constraint::MasterSlaveConstraint;
-use super::entity_kind::Role;
+use super::entity_kind::EntityRole;
 use super::entity_table::EntityTable;
 use super::fields::Fields;
 use super::geometries::Geometries;
 use super::interface_surface::InterfaceSurface;
+use super::mesh_share::{MeshShare, MeshSizes};
 use super::nodes::Nodes;
 use super::owner::Owner;
 use super::process_info::ProcessInfo;
 use super::properties::{Properties, PropertyValue};
-use super::share::{MeshSizes, Share};
 use super::slave_nodes::SlaveNodes;
 use super::sub_part::SubPart;
 use super::table::Table;
@@ -59,7 +59,7 @@ pub struct ModelPart {
     #[serde(skip)]
     pub ranks: Ranks,
     /// Share of this rank in a distributed mesh; `None` when this rank computes everything.
-    pub share: Option<Share>,
+    pub share: Option<MeshShare>,
 }
 
 /// Nodes and slave nodes with all their values: the state that iterations change.
@@ -153,7 +153,7 @@ impl ModelPart {
     /// Whether this rank evaluates an entity between bodies with these nodes: who has the pairs of the last one does, which
     /// is one of the slave's.
     pub fn evaluates_pair(&self, nodes: &[u32]) -> bool {
-        let rank = |share: &Share| nodes.last().map_or(0, |&node| share.pairs[node as usize]);
+        let rank = |share: &MeshShare| nodes.last().map_or(0, |&node| share.pairs[node as usize]);
         self.share.as_ref().is_none_or(|share| rank(share) as usize == self.ranks.rank())
     }
 
@@ -163,9 +163,9 @@ impl ModelPart {
     }
 
     /// Whether this rank evaluates an entity of the elements or conditions.
-    pub fn evaluates(&self, role: Role, at: usize) -> bool {
+    pub fn evaluates(&self, role: EntityRole, at: usize) -> bool {
         self.share.as_ref().is_none_or(|share| {
-            let owners = if role == Role::Element { &share.elements } else { &share.conditions };
+            let owners = if role == EntityRole::Element { &share.elements } else { &share.conditions };
             owners[at] as usize == self.ranks.rank()
         })
     }

@@ -1,6 +1,6 @@
 //! The bodies of a part by number.
 
-use super::bodies::bodies_of_nodes;
+use super::connected_bodies::bodies_of_nodes;
 use super::model_part::ModelPart;
 
 /// The bodies of connected elements, in the order of their first nodes; alike on all ranks but for `of_node`.

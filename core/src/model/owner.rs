@@ -15,7 +15,7 @@ pub enum Owner {
 
 /// The owners of the unknowns of one variable.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Carriers {
+pub struct DofOwners {
     /// The variable.
     pub variable: ScalarVariable,
     /// Indices of mesh nodes, in any order.
@@ -24,7 +24,7 @@ pub struct Carriers {
     pub slaves: Vec<u32>,
 }
 
-impl Carriers {
+impl DofOwners {
     /// Mesh nodes alone.
     pub fn of_nodes(variable: ScalarVariable, nodes: Vec<u32>) -> Self {
         Self { variable, nodes, slaves: Vec::new() }

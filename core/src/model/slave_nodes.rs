@@ -165,7 +165,7 @@ impl SlaveNodes {
     ///
     /// # Errors
     /// Shares with different sets.
-    pub(super) fn joined(shares: &[(&Self, &[u32], Vec<bool>)]) -> Result<Self, String> {
+    pub(super) fn merged(shares: &[(&Self, &[u32], Vec<bool>)]) -> Result<Self, String> {
         let Some((first, ..)) = shares.first() else { return Ok(Self::default()) };
         let names = |own: &Self| own.sets.iter().map(|set| set.name.clone()).collect::<Vec<_>>();
         if shares.iter().any(|(own, ..)| names(own) != names(first)) {
@@ -263,7 +263,7 @@ mod tests {
         a.history.values_mut(&NORMAL, 0)[9..].fill(-1.0);
         let owned = [vec![true, true, false, true], vec![false, true, true]];
         let [of_a, of_b] = owned;
-        let joined = SlaveNodes::joined(&[(&a, places[0], of_a), (&b, places[1], of_b)]).expect("a whole");
+        let joined = SlaveNodes::merged(&[(&a, places[0], of_a), (&b, places[1], of_b)]).expect("a whole");
         assert_eq!(joined, whole);
     }
 }

@@ -5,13 +5,13 @@ use std::path::Path;
 use super::modeler::{Modeler, ModelerEntry};
 use crate::diagnostics::{Diagnostic, Error, Place, Report, Result};
 use crate::entities::{find_kind, kind_names, require_kind};
-use crate::model::{EntityKind, EntityTable, Model, ModelPart, Role};
+use crate::model::{EntityKind, EntityRole, EntityTable, Model, ModelPart};
 use crate::parameters::{Node, Settings};
 use crate::register;
 
 /// One row of a list: the part whose geometries are used, and the kind of entity to make.
-struct Wanted {
-    role: Role,
+struct EntityRow {
+    role: EntityRole,
     part: String,
     /// Candidates; the one on the cell and space of a geometry is made of it.
     entries: Vec<&'static EntityKind>,
@@ -20,19 +20,20 @@ struct Wanted {
 }
 
 struct CreateEntities {
-    all: Vec<Wanted>,
+    all: Vec<EntityRow>,
 }
 
 fn build(settings: &Settings, _folder: &Path) -> Result<Box<dyn Modeler>> {
     let mut all = Vec::new();
-    for (list, key, role) in
-        [("elements_list", "element_name", Role::Element), ("conditions_list", "condition_name", Role::Condition)]
-    {
+    for (list, key, role) in [
+        ("elements_list", "element_name", EntityRole::Element),
+        ("conditions_list", "condition_name", EntityRole::Condition),
+    ] {
         for item in settings.items(list)? {
             let part = item.require("model_part_name")?.str()?.to_owned();
             let name = item.require(key)?;
             let entries = candidates(role, name)?;
-            all.push(Wanted { role, part, entries, name: name.str()?.to_owned(), place: name.place() });
+            all.push(EntityRow { role, part, entries, name: name.str()?.to_owned(), place: name.place() });
         }
     }
     Ok(Box::new(CreateEntities { all }))
@@ -42,7 +43,7 @@ fn build(settings: &Settings, _folder: &Path) -> Result<Box<dyn Modeler>> {
 ///
 /// # Errors
 /// Names that are not registered.
-fn candidates(role: Role, node: &Node) -> Result<Vec<&'static EntityKind>> {
+fn candidates(role: EntityRole, node: &Node) -> Result<Vec<&'static EntityKind>> {
     let name = node.str()?;
     let Some((stem, rest)) = name.split_once('#') else {
         let found = name.split(';').map(|one| require_kind(role, one).map_err(|d| Error::from(d.at(node.place()))));
@@ -70,18 +71,18 @@ fn candidates(role: Role, node: &Node) -> Result<Vec<&'static EntityKind>> {
     Ok(found)
 }
 
-impl Wanted {
+impl EntityRow {
     fn make(&self, model: &mut Model, report: &mut Report) -> Result<()> {
         let root = model.root_mut(&self.part).map_err(|error| error.at(&self.place))?;
         let selected = root.part(&self.part).map_err(|error| error.at(&self.place))?.clone();
-        let present = if self.role == Role::Element { &selected.elements } else { &selected.conditions };
+        let present = if self.role == EntityRole::Element { &selected.elements } else { &selected.conditions };
         if !present.is_empty() {
             let fact = format!("{:?} has {} {}s already", self.part, present.len(), self.role.word());
             let remedy = "leave them out of the mesh file, or this part out of the list: nothing is replaced";
             return Err(Diagnostic::error("not-empty", fact).at(self.place.clone()).remedy(remedy).into());
         }
         let ModelPart { geometries, elements, conditions, .. } = &mut *root;
-        let table: &mut EntityTable = if self.role == Role::Element { elements } else { conditions };
+        let table: &mut EntityTable = if self.role == EntityRole::Element { elements } else { conditions };
         let (mut id, mut made) = (table.max_id(), Vec::new());
         for &geometry in &selected.geometries {
             let cell = geometries.cells[geometry as usize];
@@ -101,7 +102,7 @@ impl Wanted {
             report.push(Diagnostic::warning("other-geometry", fact).at(self.place.clone()));
         }
         root.along(&self.part, |part| {
-            let list = if self.role == Role::Element { &mut part.elements } else { &mut part.conditions };
+            let list = if self.role == EntityRole::Element { &mut part.elements } else { &mut part.conditions };
             list.extend(&made);
             list.sort_unstable();
         });

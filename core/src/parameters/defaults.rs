@@ -16,13 +16,13 @@ pub struct Defaults {
     pub(super) required: Vec<&'static str>,
     pub(super) deprecated: Vec<Deprecated>,
     description: String,
-    entries: Vec<Entry>,
+    entries: Vec<DefaultEntry>,
     example: Option<Node>,
 }
 
 /// One documented key.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Entry {
+pub struct DefaultEntry {
     /// Dotted path of the key from the object's root.
     pub path: String,
     /// Type of the value, e.g. `a number`.
@@ -86,7 +86,7 @@ impl Defaults {
     pub fn parse(name: &str, text: &str) -> Result<Self> {
         let (document, comments) = document::parse(text, Path::new(name), true)?;
         let mut node = document.root;
-        let [idle, ranges, choices, switches, example] = match &mut node.value {
+        let [without_effect, ranges, choices, switches, example] = match &mut node.value {
             Value::Object(members) => {
                 [WITHOUT_EFFECT, RANGES, CHOICES, SWITCHES, EXAMPLE].map(|key| members.remove(key))
             }
@@ -96,8 +96,8 @@ impl Defaults {
         node.object()?;
         let mut entries = Vec::new();
         collect(&node, "", &comments, &mut entries);
-        if let Some(idle) = idle {
-            for_each_key(&idle.node, &mut entries, &mut |reason, entry| {
+        if let Some(without_effect) = without_effect {
+            for_each_key(&without_effect.node, &mut entries, &mut |reason, entry| {
                 entry.without_effect = Some(reason.key.clone());
                 Ok(())
             })?;
@@ -191,7 +191,7 @@ impl Defaults {
     }
 
     /// Every key, nested ones too, in the order written.
-    pub fn entries(&self) -> &[Entry] {
+    pub fn entries(&self) -> &[DefaultEntry] {
         &self.entries
     }
 
@@ -214,7 +214,7 @@ impl Defaults {
     }
 }
 
-fn collect(node: &Node, prefix: &str, comments: &[Comment], out: &mut Vec<Entry>) {
+fn collect(node: &Node, prefix: &str, comments: &[Comment], out: &mut Vec<DefaultEntry>) {
     for member in node.as_object().into_iter().flat_map(|o| o.in_source_order()) {
         let path = if prefix.is_empty() { member.key.clone() } else { format!("{prefix}.{}", member.key) };
         let beside = comments.iter().filter(|c| !c.own_line && c.first_line == end_line(&member.node));
@@ -223,7 +223,7 @@ fn collect(node: &Node, prefix: &str, comments: &[Comment], out: &mut Vec<Entry>
         texts.retain(|t| !t.is_empty());
         let kind = if member.node.is_null() { "any value" } else { member.node.value.kind() };
         let default = member.node.to_json().to_string();
-        out.push(Entry {
+        out.push(DefaultEntry {
             path: path.clone(),
             kind,
             default,
@@ -240,8 +240,8 @@ fn collect(node: &Node, prefix: &str, comments: &[Comment], out: &mut Vec<Entry>
 /// Visits the keys that an object of lists names, each with the member that it is listed under.
 fn for_each_key(
     lists: &Node,
-    entries: &mut [Entry],
-    visit: &mut dyn FnMut(&Member, &mut Entry) -> Result<()>,
+    entries: &mut [DefaultEntry],
+    visit: &mut dyn FnMut(&Member, &mut DefaultEntry) -> Result<()>,
 ) -> Result<()> {
     for list in lists.object()?.iter() {
         for key in list.node.array()? {
@@ -300,14 +300,16 @@ mod tests {
 }"#;
         let defaults = Defaults::parse("thing", text).unwrap();
         assert_eq!(defaults.description(), "Fixes a thing.\nTwice.");
-        let idle = defaults.entries().iter().filter_map(|entry| Some((&*entry.path, entry.without_effect.as_deref()?)));
-        assert_eq!(idle.collect::<Vec<_>>(), [("nested.count", "everything is counted")]);
+        let without_effect =
+            defaults.entries().iter().filter_map(|entry| Some((&*entry.path, entry.without_effect.as_deref()?)));
+        assert_eq!(without_effect.collect::<Vec<_>>(), [("nested.count", "everything is counted")]);
         assert!(Defaults::parse("thing", r#"{ "a": 1, "$without_effect": { "why": ["b"] } }"#).is_err());
         let ranged = Defaults::parse("thing", r#"{ "a": 1.0, "$ranges": { "(0, inf)": ["a"] } }"#).unwrap();
         assert!(ranged.entries()[0].range.is_some_and(|range| !range.holds(0.0)));
         assert!(Defaults::parse("thing", r#"{ "a": 1, "$ranges": { "above 0": ["a"] } }"#).is_err());
         let text = r#"{ "on": false, "a": "x", "$choices": { "x | y": ["a"] }, "$switches": { "on": ["a"] } }"#;
-        let entry = &Defaults::parse("thing", text).unwrap().entries()[1];
+        let defaults_with_words = Defaults::parse("thing", text).unwrap();
+        let entry = &defaults_with_words.entries()[1];
         assert_eq!((entry.choices.join(" "), entry.switch.as_deref()), ("x y".to_owned(), Some("on")));
         let said: Vec<String> = defaults
             .entries()

@@ -81,7 +81,7 @@ pub(super) fn parse(text: &str, path: &Path, with_comments: bool) -> Result<(Doc
         let problem = Diagnostic::error("invalid-json", "the file holds no JSON value").at(Place::file(path));
         return Err(problem.remedy("write at least {}").into());
     };
-    let mut builder = Builder { file: Arc::from(path), cursor: Cursor::new(text), problems: Vec::new() };
+    let mut builder = DocumentBuilder { file: Arc::from(path), cursor: Cursor::new(text), problems: Vec::new() };
     let root = builder.node(&root);
     if builder.problems.iter().any(|d| d.severity == crate::diagnostics::Severity::Error) {
         return Err(Error::Input(builder.problems));
@@ -156,13 +156,13 @@ impl<'a> Cursor<'a> {
     }
 }
 
-struct Builder<'a> {
+struct DocumentBuilder<'a> {
     file: Arc<Path>,
     cursor: Cursor<'a>,
     problems: Vec<Diagnostic>,
 }
 
-impl Builder<'_> {
+impl DocumentBuilder<'_> {
     fn node(&mut self, value: &ast::Value<'_>) -> Node {
         let (line, column) = self.cursor.advance(value.start());
         let value = match value {

@@ -15,7 +15,7 @@ mod typed;
 mod interval;
 mod expression;
 
-pub use defaults::{Defaults, Entry};
+pub use defaults::{DefaultEntry, Defaults};
 pub use document::Document;
 pub use expression::{Expression, ExpressionError, SpaceTime};
 pub use interval::Interval;

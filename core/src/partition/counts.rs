@@ -23,7 +23,7 @@ use serde::Serialize;
 
 use super::faces::{faces, outer_and_shared};
 use super::facets::facing_pairs;
-use super::share::everywhere;
+use super::mesh_shares::everywhere;
 use super::{Partition, weights};
 use crate::model::ModelPart;
 
@@ -87,7 +87,7 @@ pub struct Traffic {
 
 /// The counts of all ranks.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Counts {
+pub struct PartitionCounts {
     /// By rank.
     pub ranks: Vec<RankCounts>,
     /// Largest load as a multiple of the mean.
@@ -102,7 +102,7 @@ pub struct Counts {
     pub common: usize,
 }
 
-impl Counts {
+impl PartitionCounts {
     /// Counts the entities that `partition` gives each rank of the mesh, where all ranks keep the `common` nodes with the elements at
     /// them.
     pub fn new(part: &ModelPart, partition: &Partition, common: &[bool]) -> Self {
@@ -166,7 +166,7 @@ fn meet(part: &ModelPart, partition: &Partition, everywhere: &[bool], ranks: &mu
     for (element, &rank) in partition.elements.iter().enumerate() {
         of_rank[rank as usize].push(element as u32);
     }
-    let mut meetings: FxHashMap<(u32, u32), ()> = FxHashMap::default();
+    let mut neighbour_pairs: FxHashMap<(u32, u32), ()> = FxHashMap::default();
     let mut all: Vec<u64> = Vec::new();
     let mut pairs: Vec<u64> = Vec::new();
     for (rank, elements) in of_rank.iter().enumerate() {
@@ -188,14 +188,14 @@ fn meet(part: &ModelPart, partition: &Partition, everywhere: &[bool], ranks: &mu
                 if node != last {
                     ranks[rank].ghosts += 1;
                     ranks[owner as usize].copies += 1;
-                    meetings.insert((owner.min(rank as u32), owner.max(rank as u32)), ());
+                    neighbour_pairs.insert((owner.min(rank as u32), owner.max(rank as u32)), ());
                 }
             }
             last = node;
         }
         all.extend_from_slice(&pairs);
     }
-    for (a, b) in meetings.into_keys() {
+    for (a, b) in neighbour_pairs.into_keys() {
         ranks[a as usize].neighbours += 1;
         ranks[b as usize].neighbours += 1;
     }

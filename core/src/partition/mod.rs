@@ -2,26 +2,26 @@
 //!
 //! [`partition`] cuts the mesh: elements that share a face are neighbours in a graph, and so are the elements behind facets that face
 //! each other, so that pairs tend to stay on one rank; elements behind slave facets weigh more. Rank 0 computes it for all.
-//! [`surfaces`] asks the processes of a deck for the facets' surfaces, and [`Counts`] the costs of a partition. [`Shares`] gives the
-//! share of each rank, with its [`Share`](crate::model::Share), and [`Share::balance_pairs`](crate::model::Share::balance_pairs) shares
+//! [`surfaces`] asks the processes of a deck for the facets' surfaces, and [`PartitionCounts`] the costs of a partition. [`Shares`] gives the
+//! share of each rank, with its [`MeshShare`](crate::model::MeshShare), and [`MeshShare::balance_pairs`](crate::model::MeshShare::balance_pairs) shares
 //! out pairs anew once they are known.
 
-mod balance;
+mod load_balance;
 mod common;
 mod counts;
 mod faces;
 mod facets;
 mod interfaces;
 mod listed_processes;
-mod share;
+mod mesh_shares;
 #[cfg(test)]
 mod tests;
 
 pub use common::common_nodes;
-pub use counts::{Counts, PRODUCTS, RankCounts, Repeats, Traffic};
+pub use counts::{PRODUCTS, PartitionCounts, RankCounts, Repeats, Traffic};
 pub use facets::ContactFacet;
 pub use interfaces::{Pairing, Surface, pairings, surfaces, warnings_of_repeated_pairs};
-pub use share::{Shares, everywhere};
+pub use mesh_shares::{Shares, everywhere};
 
 use zelus_linear_algebra::{WeightedGraph, partition_graph};
 

@@ -1,10 +1,10 @@
 use std::collections::HashMap;
 
-use super::share::Shares;
-use super::{Counts, Partition, Repeats, Surface, Traffic, common_nodes, partition, surfaces};
+use super::mesh_shares::Shares;
+use super::{Partition, PartitionCounts, Repeats, Surface, Traffic, common_nodes, partition, surfaces};
 use crate::geometry::Shape;
 use crate::model::test_variables::NORMAL;
-use crate::model::{EntityKind, ModelPart, Nodes, Role, SubPart};
+use crate::model::{EntityKind, EntityRole, ModelPart, Nodes, SubPart};
 use crate::parameters::{Document, Node};
 use crate::processes::{NamedSurface, ProcessEntry};
 use crate::register;
@@ -13,12 +13,12 @@ use crate::registry::Entry;
 static HEXAHEDRON: EntityKind = EntityKind {
     cell: Some(Shape::Hex8),
     space: 3,
-    ..EntityKind::new(Role::Element, Entry::new("TestHexahedron", file!(), line!()))
+    ..EntityKind::new(EntityRole::Element, Entry::new("TestHexahedron", file!(), line!()))
 };
 static QUADRILATERAL: EntityKind = EntityKind {
     cell: Some(Shape::Quad4),
     space: 3,
-    ..EntityKind::new(Role::Condition, Entry::new("TestQuadrilateral", file!(), line!()))
+    ..EntityKind::new(EntityRole::Condition, Entry::new("TestQuadrilateral", file!(), line!()))
 };
 
 /// Two cubes of `n`³ cells on each other, their meshes apart; part `Contact` holds both touching sides.
@@ -174,7 +174,7 @@ fn counts_of_a_halved_bar_are_those_of_its_section() {
     (cut.elements, cut.cut) = (by_block, 0);
     let surfaces = its_surfaces(&part);
     let common = common_nodes(&part, &surfaces, &Document::from_str("{}", "deck.json").unwrap().root);
-    let counts = Counts::new(&part, &cut, &common);
+    let counts = PartitionCounts::new(&part, &cut, &common);
     let [lower, upper] = counts.ranks[..] else { panic!("two ranks") };
     assert_eq!((lower.nodes, lower.ghosts, lower.copies, lower.neighbours, lower.cut_faces), (125, 0, 0, 0, 0));
     assert_eq!((lower.slave_facets, upper.slave_facets, upper.far_pairs), (0, 16, 16));
@@ -190,7 +190,7 @@ fn counts_of_a_halved_bar_are_those_of_its_section() {
     // lower block split along x = 1/2: a section of 25 nodes and 16 faces
     cut.elements = (0..128).map(|element| if element < 64 { u32::from(element % 4 >= 2) } else { 1 }).collect();
     cut.nodes = (0..250).map(|node| if node < 125 { u32::from(node % 5 > 2) } else { 1 }).collect();
-    let counts = Counts::new(&part, &cut, &common);
+    let counts = PartitionCounts::new(&part, &cut, &common);
     let [left, right] = counts.ranks[..] else { panic!("two ranks") };
     assert_eq!((left.nodes, left.ghosts, left.copies, left.neighbours, left.cut_faces), (75, 0, 25, 1, 16));
     assert_eq!((right.nodes, right.ghosts, right.copies, right.neighbours, right.cut_faces), (175, 25, 0, 1, 16));
@@ -233,7 +233,7 @@ fn ranks_keep_their_elements_and_the_interface() {
         shares.push(share);
     }
     for (a, b) in (0..ranks).flat_map(|a| (0..ranks).map(move |b| (a, b))).filter(|(a, b)| a != b) {
-        let places = |share: &crate::model::Share, list: &[u32]| {
+        let places = |share: &crate::model::MeshShare, list: &[u32]| {
             list.iter().map(|&n| share.places[n as usize]).collect::<Vec<u32>>()
         };
         assert_eq!(places(&shares[a], &shares[a].halo.copied[b]), places(&shares[b], &shares[b].halo.copies[a]));
@@ -273,7 +273,7 @@ fn slave_nodes_go_with_their_mesh_nodes_and_come_back() {
         values.zip(copies).filter(|(_, is_copy)| *is_copy).for_each(|(value, _)| value.fill(f64::NAN));
     }
     let like = of_all.of(&whole, 1);
-    let joined = ModelPart::joined(shares).unwrap();
+    let joined = ModelPart::merged(shares).unwrap();
     assert!(joined.slave_nodes == whole.slave_nodes);
     assert!(joined.cut_like(&like).unwrap().slave_nodes == like.slave_nodes);
 }

@@ -80,13 +80,13 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
 }
 
 /// Points in cells, to find those near a place.
-struct Cells<'a> {
+struct PointGrid<'a> {
     points: &'a [[f64; 3]],
     size: f64,
     of_cell: FxHashMap<[i64; 3], Vec<u32>>,
 }
 
-impl<'a> Cells<'a> {
+impl<'a> PointGrid<'a> {
     fn new(points: &'a [[f64; 3]], size: f64) -> Self {
         let mut of_cell = FxHashMap::<_, Vec<u32>>::default();
         for (at, x) in (0..).zip(points) {
@@ -134,7 +134,7 @@ impl TiesToNeighbours {
     fn find(&self, model: &Model) -> Result<Vec<Vec<(u32, f64)>>> {
         let part = model.root(&self.root)?;
         let points: Vec<[f64; 3]> = self.masters.iter().map(|&node| part.nodes.current[node as usize]).collect();
-        let cells = Cells::new(&points, self.radius);
+        let cells = PointGrid::new(&points, self.radius);
         let follows = |&node: &u32| {
             let x = part.nodes.current[node as usize];
             let near = cells.near(x, self.fewest);
@@ -222,7 +222,7 @@ mod tests {
     #[test]
     fn as_many_neighbours_are_found_as_are_asked_for() {
         let points: Vec<[f64; 3]> = (0..50).map(|i| [f64::from(i), 0.0, 0.0]).collect();
-        let cells = Cells::new(&points, 1.0);
+        let cells = PointGrid::new(&points, 1.0);
         assert_eq!(cells.near([10.2, 0.0, 0.0], 1), [10, 11]);
         assert_eq!(cells.near([10.2, 0.0, 0.0], 3), [9, 10, 11, 12]);
         assert_eq!(cells.near([10.0, 5.5, 0.0], 2).len(), 5, "within six");

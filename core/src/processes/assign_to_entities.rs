@@ -154,13 +154,14 @@ pub(super) fn centre(nodes: &[u32], positions: &[[f64; 3]]) -> [f64; 3] {
 
 impl AssignToEntities {
     /// Reasons why the values set on entities of a kind have no effect.
-    fn idle(&self, part: &ModelPart) -> Result<Vec<WithoutEffect>> {
+    fn without_effect(&self, part: &ModelPart) -> Result<Vec<WithoutEffect>> {
         let selection = self.target.selection(&part.tree)?;
-        let reasons = self.containers.iter().filter_map(|container| self.idle_on(*container, part, selection));
+        let reasons =
+            self.containers.iter().filter_map(|container| self.without_effect_on(*container, part, selection));
         Ok(reasons.collect())
     }
 
-    fn idle_on(&self, container: Container, part: &ModelPart, selection: &SubPart) -> Option<WithoutEffect> {
+    fn without_effect_on(&self, container: Container, part: &ModelPart, selection: &SubPart) -> Option<WithoutEffect> {
         let path = &self.target.path;
         let mut names: Vec<&str> = self.components.iter().map(|c| c.variable.column).collect();
         names.dedup();
@@ -198,7 +199,7 @@ impl AssignToEntities {
 
 impl Process for AssignToEntities {
     fn check(&self, model: &Model, _system: &System, warnings: &mut Report) -> Result<()> {
-        for idle in self.idle(model.root(&self.target.path)?)? {
+        for idle in self.without_effect(model.root(&self.target.path)?)? {
             let problem = Diagnostic::warning("acts-on-nothing", idle.fact).at(self.target.place.clone());
             warnings.push(problem.remedy(
                 "name the part that holds the conditions to load, and the variable they take: `zelus describe` of a condition says it",
@@ -210,7 +211,8 @@ impl Process for AssignToEntities {
     fn drives(&self, part: &ModelPart, _system: &System) -> bool {
         let gives = self.components.iter().any(|component| !component.value.is_zero());
         let idle = || {
-            self.idle(part).is_ok_and(|idle| idle.iter().filter(|idle| idle.is_whole).count() == self.containers.len())
+            self.without_effect(part)
+                .is_ok_and(|idle| idle.iter().filter(|idle| idle.is_whole).count() == self.containers.len())
         };
         gives && !(self.target.is_of(part) && idle())
     }

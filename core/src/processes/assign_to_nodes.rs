@@ -95,7 +95,7 @@ impl AssignToNodes {
     }
 
     /// Why it does nothing, where that is so.
-    fn idle(&self, part: &ModelPart) -> Result<Option<WithoutEffect>> {
+    fn without_effect(&self, part: &ModelPart) -> Result<Option<WithoutEffect>> {
         let Target { path, process, .. } = &self.target;
         if self.target.selection(&part.tree)?.nodes.is_empty() && part.share.is_none() {
             return Ok(Some(WithoutEffect::whole(format!("{path} has no nodes that {process} could act on"))));
@@ -174,7 +174,7 @@ impl Process for AssignToNodes {
         if let Some(warning) = self.fixed_in_vain(&system.dofs) {
             warnings.push(warning);
         }
-        if let Some(idle) = self.idle(model.root(&self.target.path)?)? {
+        if let Some(idle) = self.without_effect(model.root(&self.target.path)?)? {
             let problem = Diagnostic::warning("acts-on-nothing", idle.fact).at(self.target.place.clone());
             warnings.push(problem.remedy("name the part and the components that are meant, or remove the process"));
         }
@@ -187,7 +187,7 @@ impl Process for AssignToNodes {
         let begins =
             |c: &NodalComponent| of_steps && !c.fixed && system.dofs.variables().any(|v| v.column == c.variable.column);
         let given = |c: &NodalComponent| c.value.as_ref().is_some_and(|value| !value.is_zero()) && !begins(c);
-        let idle = || matches!(self.idle(part), Ok(Some(idle)) if idle.is_whole);
+        let idle = || matches!(self.without_effect(part), Ok(Some(idle)) if idle.is_whole);
         self.components.iter().any(given) && !(self.target.is_of(part) && idle())
     }
 

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::assign_to_entities::centre;
 use crate::diagnostics::Diagnostic;
-use crate::entities::{BlockFactory, BlockRequest, LocalSystems, Want, block_factory};
+use crate::entities::{BlockFactory, BlockRequest, LocalSystems, Request, block_factory};
 use crate::model::{EntityKind, Field, ModelPart, ScalarVariable};
 use crate::vector3::{dot, sub};
 
@@ -20,13 +20,13 @@ struct Faces {
 
 /// Where the number stands that faces read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Carrier {
+enum LoadTable {
     Conditions,
     /// Nodes, in columns with history.
     Nodes,
 }
 
-impl Carrier {
+impl LoadTable {
     /// The column of the number.
     fn column(self, part: &mut ModelPart, variable: ScalarVariable) -> Option<&mut Field> {
         match self {
@@ -43,7 +43,7 @@ pub(super) fn pulling(
     variable: ScalarVariable,
     sign: Option<f64>,
 ) -> Option<Diagnostic> {
-    pulling_by(part, conditions, variable, sign, Carrier::Conditions)
+    pulling_by(part, conditions, variable, sign, LoadTable::Conditions)
 }
 
 /// As [`pulling`], of the faces all of whose nodes are among `nodes`, which are given the number.
@@ -59,7 +59,7 @@ pub(super) fn pulling_of_nodes(
     if faces.is_empty() || part.nodes.history.get(variable.column).is_none_or(|field| field.components != 1) {
         return None;
     }
-    pulling_by(part, &faces, variable, sign, Carrier::Nodes)
+    pulling_by(part, &faces, variable, sign, LoadTable::Nodes)
 }
 
 fn pulling_by(
@@ -67,7 +67,7 @@ fn pulling_by(
     conditions: &[u32],
     variable: ScalarVariable,
     sign: Option<f64>,
-    carrier: Carrier,
+    carrier: LoadTable,
 ) -> Option<Diagnostic> {
     let sign = sign.unwrap_or(1.0);
     if variable.component.is_some() || sign == 0.0 || part.share.is_some() {
@@ -118,16 +118,16 @@ fn unit_forces(
     entry: &'static EntityKind,
     members: &[u32],
     variable: ScalarVariable,
-    carrier: Carrier,
+    carrier: LoadTable,
 ) -> Option<Vec<(u32, [f64; 3])>> {
     let make = block_factory(entry)?;
-    if carrier == Carrier::Conditions {
+    if carrier == LoadTable::Conditions {
         part.conditions.data.add_named(variable.column, 1);
     }
     let before = carrier.column(part, variable)?.levels[0].clone();
     let items: Vec<u32> = match carrier {
-        Carrier::Conditions => members.to_vec(),
-        Carrier::Nodes => members.iter().flat_map(|&at| part.conditions.nodes(at)).copied().collect(),
+        LoadTable::Conditions => members.to_vec(),
+        LoadTable::Nodes => members.iter().flat_map(|&at| part.conditions.nodes(at)).copied().collect(),
     };
     let mut forces = Vec::new();
     for number in [1.0, 0.0] {
@@ -155,8 +155,8 @@ fn forces_of(
         return None;
     }
     let (size, mut out) = (block.unknowns().len(), LocalSystems::default());
-    out.reset(members.len(), size, Want::Residual);
-    block.local_systems(&part.view(), 0..members.len(), Want::Residual, &mut out).ok()?;
+    out.reset(members.len(), size, Request::Residual);
+    block.local_systems(&part.view(), 0..members.len(), Request::Residual, &mut out).ok()?;
     let force = |at: usize| {
         let rows = block.unknowns().iter().zip(&out.rhs[at * size..(at + 1) * size]);
         rows.fold([0.0; 3], |mut sum: [f64; 3], (unknown, value)| {

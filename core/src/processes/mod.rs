@@ -34,7 +34,7 @@ pub use assign_to_entities::{AssignToEntities, Container, EntityComponent};
 pub use assign_to_nodes::{AssignToNodes, NodalComponent};
 pub use local_axes::LocalAxes;
 pub use output::{
-    OutputFormat, OutputFormatEntry, OutputFormatFactory, Shown, ShownSurface, largest_results, usual_results,
+    OutputFormat, OutputFormatEntry, OutputFormatFactory, OutputFrame, SurfaceFrame, largest_results, usual_results,
 };
 pub use prescription::{Load, LoadCarrier, Prescription};
 pub use process::{NamedSurface, Process, ProcessEntry, ProcessFactory, ProcessRequest};

@@ -2,7 +2,7 @@ use super::*;
 use crate::assembly::System;
 use crate::diagnostics::{Report, Result};
 use crate::geometry::Shape;
-use crate::model::{Carriers, EntityKind, Model, ModelPart, Nodes, Role, ScalarVariable, SubPart, named};
+use crate::model::{DofOwners, EntityKind, EntityRole, Model, ModelPart, Nodes, ScalarVariable, SubPart, named};
 use crate::parameters::{Defaults, Document, Settings};
 use crate::register_variable;
 use crate::registry::{self, Entry};
@@ -15,7 +15,7 @@ register_variable! {
 static LINE: EntityKind = EntityKind {
     cell: Some(Shape::Line2),
     space: 2,
-    ..EntityKind::new(Role::Condition, Entry::new("TestLine2D2N", file!(), line!()))
+    ..EntityKind::new(EntityRole::Condition, Entry::new("TestLine2D2N", file!(), line!()))
 };
 
 /// Three nodes on the x axis at 0, 1, 3; two line conditions between them; part "Edge" with the last two nodes.
@@ -40,7 +40,7 @@ fn model() -> Model {
 /// The displacements of [`model`] are unknowns.
 fn system() -> System {
     let mut system = System::default();
-    let displacement = |name| Carriers::of_nodes(scalar(name), vec![0, 1, 2]);
+    let displacement = |name| DofOwners::of_nodes(scalar(name), vec![0, 1, 2]);
     let part = &model().parts["Structure"];
     system.dofs.number(part, &["DISPLACEMENT_X", "DISPLACEMENT_Y"].map(displacement), &[]);
     system

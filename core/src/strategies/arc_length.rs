@@ -5,7 +5,7 @@
 //! radius is ‖K⁻¹ q‖, that of the whole load; then r grows by √(desired/needed iterations).
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
 use super::linear_solve::{Failed, Solved};
 use super::newton::{NewtonRaphson, References};
@@ -87,9 +87,9 @@ stored_as_bytes!(ArcLengthState);
 
 #[typetag::serde(name = "arc_length")]
 impl State for ArcLengthState {
-    fn carry(&mut self, carrier: &mut dyn Carrier) {
-        carrier.by_unknown(&mut self.last);
-        self.newton.iter_mut().for_each(|state| state.carry(carrier));
+    fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        mapper.by_unknown(&mut self.last);
+        self.newton.iter_mut().for_each(|state| state.remap(mapper));
     }
 }
 
@@ -270,7 +270,7 @@ impl SolutionStrategy for ArcLength {
         Ok(record)
     }
 
-    fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
+    fn finalize_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
         if let Some((factor, step, iterations)) = self.pending.take() {
             (self.factor, self.last) = (factor, step);
             part.info.values.insert("LOAD_FACTOR", factor);
@@ -279,7 +279,7 @@ impl SolutionStrategy for ArcLength {
                 *radius = grown.clamp(self.settings.least * *first, self.settings.most * *first);
             }
         }
-        self.newton.account.accept();
+        self.newton.energy_balance.accept();
         accept(part, system)
     }
 

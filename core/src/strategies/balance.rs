@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::left_out::left_out_of_json;
+use super::omitted_fields::omitted_from_json;
 
 /// Balance of forces, states of contact and energies at the end of an accepted step.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -23,9 +23,9 @@ pub struct UnknownBalance {
     /// The unknown, e.g. DISPLACEMENT.
     pub unknown: String,
     /// Sums of the components.
-    pub forces: Sums,
+    pub forces: BalanceTerms,
     /// Sums of moments about `centre`, in the present configuration; `None` for unknowns that move nothing.
-    pub moments: Option<Sums>,
+    pub moments: Option<BalanceTerms>,
     /// Centre of the box around the initial mesh.
     pub centre: [f64; 3],
     /// Flows through the body, of unknowns that move nothing, e.g. heat (power).
@@ -33,7 +33,7 @@ pub struct UnknownBalance {
     pub flows: Option<Flows>,
 }
 
-left_out_of_json!(UnknownBalance, "flows");
+omitted_from_json!(UnknownBalance, "flows");
 
 /// Flows into, out of and within the body: entering − leaving + elements + interactions = stored but for the out-of-balance remainder.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -48,7 +48,7 @@ pub struct Flows {
 
 /// Terms of the balance; their sum is zero.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Sums {
+pub struct BalanceTerms {
     /// External forces of conditions and elements.
     pub loads: [f64; 3],
     /// Reactions of supports and of constraints to fixed unknowns.

@@ -6,7 +6,7 @@
 //! 5 are not for motion without damping.
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
 use super::scheme::{Scheme, SchemeFactory, predict_ballistic};
 use crate::assembly::{DofTable, Inertia};
@@ -36,7 +36,7 @@ stored_as_bytes!(BdfState);
 
 #[typetag::serde(name = "bdf")]
 impl State for BdfState {
-    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+    fn remap(&mut self, _mapper: &mut dyn StateMapper) {}
 }
 
 /// Weights of the values at `times` in the derivative at `times[0]` of the polynomial through them.

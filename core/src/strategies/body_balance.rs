@@ -8,9 +8,9 @@
 //! with the forces of supported unknowns among those of the right-hand side. Residuals no larger than round-off pass: of the terms
 //! in the present state, or of the residual at the start of the step, which a body that is let go loses whole.
 
-use super::account::Forces;
 use super::criterion::is_round_off;
-use super::whereabouts::body_in_words;
+use super::energy_balance::Forces;
+use super::location::body_in_words;
 use crate::assembly::{Assembler, System};
 use crate::model::{ModelPart, NumberedBodies, Rates};
 use crate::vector3::norm;
@@ -62,7 +62,7 @@ impl Imbalance {
     /// The body that is farthest out of balance beyond `tolerance`; `None` where each is in balance. Residuals are those that the
     /// equations see, now and at the start of the step. Collective.
     pub fn largest(
-        groups: &Groups<'_>,
+        groups: &BodyDofs<'_>,
         part: &ModelPart,
         residuals: [&[f64]; 2],
         forces: &Forces,
@@ -87,7 +87,7 @@ impl Imbalance {
 }
 
 /// The unknowns by body and variable, multipliers aside; nodes of no element make a last body.
-pub(super) struct Groups<'a> {
+pub(super) struct BodyDofs<'a> {
     bodies: &'a NumberedBodies,
     system: &'a System,
     assembler: &'a Assembler,
@@ -96,7 +96,7 @@ pub(super) struct Groups<'a> {
     places: Vec<Option<usize>>,
 }
 
-impl<'a> Groups<'a> {
+impl<'a> BodyDofs<'a> {
     /// The groups of the unknowns of a system.
     pub fn new(bodies: &'a NumberedBodies, system: &'a System, assembler: &'a Assembler) -> Self {
         let dofs = &system.dofs;
@@ -126,8 +126,8 @@ impl<'a> Groups<'a> {
     }
 
     /// Terms of the balance of each group; collective.
-    fn terms(&self, part: &ModelPart, residuals: [&[f64]; 2], forces: &Forces) -> Terms {
-        let mut out = Terms::new(self.count());
+    fn terms(&self, part: &ModelPart, residuals: [&[f64]; 2], forces: &Forces) -> BodySums {
+        let mut out = BodySums::new(self.count());
         for (n, group) in (0..self.system.dofs.len()).filter_map(|n| Some((n, self.of(n)?))) {
             for (kind, of_kind) in forces[..KINDS].iter().enumerate() {
                 out.squares[group][kind] += of_kind[n] * of_kind[n];
@@ -158,7 +158,7 @@ impl<'a> Groups<'a> {
 }
 
 /// Sums over the unknowns of each group.
-struct Terms {
+struct BodySums {
     /// Σ r² of the unknowns that are solved for, now and at the start of the step.
     residual: Vec<[f64; 2]>,
     /// Σ r of these now, by component.
@@ -169,7 +169,7 @@ struct Terms {
     sizes: Vec<[f64; KINDS]>,
 }
 
-impl Terms {
+impl BodySums {
     fn new(count: usize) -> Self {
         let (squares, sizes) = (vec![[0.0; KINDS]; count], vec![[0.0; KINDS]; count]);
         Self { residual: vec![[0.0; 2]; count], sum: vec![[0.0; 3]; count], squares, sizes }

@@ -11,7 +11,7 @@ use crate::{register, registered_kind};
 
 /// Action of a builder.
 #[derive(Clone, Copy)]
-pub enum Builder {
+pub enum BuilderAction {
     /// The system goes to the solver as it is.
     Direct,
     /// A solver around the deck's, which is given with all solver settings.
@@ -21,16 +21,16 @@ pub enum Builder {
 registered_kind! {
     /// A builder-and-solver that decks name.
     pub struct BuilderEntry("builder_and_solver", "unknown-name") {
-        build: Builder;
+        build: BuilderAction;
     }
 }
 
 register! { BuilderEntry "block",
     aliases: &["block_lagrange"],
     about: "fixities and constraints are eliminated; every builder gives the same answer",
-    build: Builder::Direct,
+    build: BuilderAction::Direct,
 }
 register! { BuilderEntry "elimination",
     about: "fixities and constraints are eliminated; every builder gives the same answer",
-    build: Builder::Direct,
+    build: BuilderAction::Direct,
 }

@@ -2,7 +2,7 @@
 
 use zelus_linear_algebra::{CondensationSettings, Multipliers, NotCondensable};
 
-use super::meaning::Meanings;
+use super::dof_name::DofNames;
 use crate::diagnostics::{Diagnostic, Place};
 use crate::model::{MultiplierRequest, ProcessInfo};
 
@@ -29,8 +29,8 @@ pub(crate) fn multipliers(info: &ProcessInfo) -> Multipliers {
 }
 
 /// Why multipliers are not condensed, by the names of their nodes.
-pub(super) fn fact(refused: NotCondensable, meaning: Meanings<'_>) -> String {
-    let name = |equation| meaning(equation).map_or_else(|| format!("equation {equation}"), |it| it.to_string());
+pub(super) fn fact(refused: NotCondensable, dof_name: DofNames<'_>) -> String {
+    let name = |equation| dof_name(equation).map_or_else(|| format!("equation {equation}"), |it| it.to_string());
     match refused {
         NotCondensable::OffNode { multiplier, equation, share } => format!(
             "{} acts on {} by {share:.1e} of what it does on its own node, so that multipliers cannot be condensed",
@@ -58,8 +58,8 @@ pub(super) fn remedy(refused: NotCondensable) -> &'static str {
 }
 
 /// The warning that the direct engine solves for all unknowns; `place` names the iterative engine.
-pub(super) fn warning(refused: NotCondensable, meaning: Meanings<'_>, place: Option<&Place>) -> Diagnostic {
-    let fact = fact(refused, meaning);
+pub(super) fn warning(refused: NotCondensable, dof_name: DofNames<'_>, place: Option<&Place>) -> Diagnostic {
+    let fact = fact(refused, dof_name);
     Diagnostic::warning("not-condensed", format!("{fact}: a direct engine solves for all unknowns"))
         .at(place.cloned())
         .remedy(remedy(refused))

@@ -147,7 +147,7 @@ pub fn is_last_digit(increment: f64, value: f64) -> bool {
 
 /// One measured block.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Check {
+pub struct ConvergenceCheck {
     /// Measured quantity, e.g. `residual`.
     #[serde(deserialize_with = "names::read")]
     pub label: Name,
@@ -169,12 +169,12 @@ pub struct Verdict {
     /// Whether the iteration is good enough.
     pub converged: bool,
     /// Measured quantities.
-    pub checks: Vec<Check>,
+    pub checks: Vec<ConvergenceCheck>,
 }
 
 impl Verdict {
     /// Converged when every check is.
-    pub fn all(checks: Vec<Check>) -> Self {
+    pub fn all(checks: Vec<ConvergenceCheck>) -> Self {
         Self { converged: checks.iter().all(|check| check.converged), checks }
     }
 }

@@ -5,11 +5,11 @@
 //! ([`crate::entities::Interaction::step_factor`]). One that adds stiffness finds the longest step of the bodies there, [`CRITICAL_STEP`].
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
 use super::central_differences::CentralDifferences;
 use super::critical_step::critical_step;
-use super::meaning::Meaning;
+use super::dof_name::DofName;
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::{SchemeEntry, SchemeFactory};
@@ -104,8 +104,8 @@ stored_as_bytes!(ExplicitState);
 
 #[typetag::serde(name = "explicit")]
 impl State for ExplicitState {
-    fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.assembler.carry(carrier);
+    fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        self.assembler.remap(mapper);
     }
 }
 
@@ -240,7 +240,7 @@ impl ExplicitStrategy {
 
     /// Warns, once, of a fixed unknown on any rank that is given another value; collective.
     fn warn_of_motion(&mut self, part: &mut ModelPart, system: &System, moved: Option<usize>) {
-        let moved = moved.map(|number| Meaning::of(&system.dofs, &part.nodes, number as u32).to_string());
+        let moved = moved.map(|number| DofName::of(&system.dofs, &part.nodes, number as u32).to_string());
         if let Some(moved) = part.ranks.first_to_say(moved) {
             let fact = format!("{moved} is fixed and given another value: it stays where it is");
             let remedy = "\"follow_prescribed_motion\" of the solver settings is false: true moves fixed unknowns";
@@ -250,7 +250,7 @@ impl ExplicitStrategy {
     }
 
     fn explain(&self, part: &ModelPart, system: &System, number: usize) -> String {
-        let unknown = Meaning::of(&system.dofs, &part.nodes, number as u32);
+        let unknown = DofName::of(&system.dofs, &part.nodes, number as u32);
         format!("{unknown} is no longer finite: the step is longer than the critical one")
     }
 }
@@ -324,7 +324,7 @@ impl SolutionStrategy for ExplicitStrategy {
         recorded(part, system, |part, system| self.advance(part, system))
     }
 
-    fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
+    fn finalize_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
         accept(part, system)
     }
 

@@ -6,7 +6,7 @@
 //! are those of t_{n+1}. F_n is the force of inertia and damping in step n.
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
 use super::scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, predict_ballistic, update_newmark};
 use crate::assembly::{DofTable, Inertia};
@@ -35,8 +35,8 @@ stored_as_bytes!(GeneralizedAlphaState);
 
 #[typetag::serde(name = "generalized_alpha")]
 impl State for GeneralizedAlphaState {
-    fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.forces.iter_mut().for_each(|forces| carrier.by_unknown(forces));
+    fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        self.forces.iter_mut().for_each(|forces| mapper.by_unknown(forces));
     }
 }
 

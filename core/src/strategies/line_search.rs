@@ -21,7 +21,7 @@ pub struct LineSearch {
 }
 
 /// A factor tried, with the work there; `None` where the state cannot be computed, e.g. an inverted element.
-type Tried = (f64, Option<f64>);
+type TrialFactor = (f64, Option<f64>);
 
 impl LineSearch {
     /// From `advanced_settings` of the strategy.
@@ -55,9 +55,9 @@ impl LineSearch {
     /// As `work`.
     pub fn search(&self, before: f64, mut work: impl FnMut(f64) -> Result<Option<f64>>) -> Result<f64> {
         let enough = self.tolerance * before.abs();
-        let size = |tried: &Tried| tried.1.map_or(f64::INFINITY, f64::abs);
-        let mut low: Tried = (0.0, Some(before));
-        let mut high: Tried = (self.second, work(self.second)?);
+        let size = |tried: &TrialFactor| tried.1.map_or(f64::INFINITY, f64::abs);
+        let mut low: TrialFactor = (0.0, Some(before));
+        let mut high: TrialFactor = (self.second, work(self.second)?);
         let mut best = high;
         for turn in 0..self.iterations {
             if size(&best) <= enough {
@@ -78,7 +78,7 @@ impl LineSearch {
             if size(&tried) < size(&best) {
                 best = tried;
             }
-            let crossed = |a: &Tried, b: &Tried| a.1.zip(b.1).is_none_or(|(a, b)| a * b < 0.0);
+            let crossed = |a: &TrialFactor, b: &TrialFactor| a.1.zip(b.1).is_none_or(|(a, b)| a * b < 0.0);
             if tried.1.is_none() || crossed(&low, &tried) {
                 high = tried;
             } else if crossed(&tried, &high) && tried.0 < high.0 {

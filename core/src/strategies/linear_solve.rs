@@ -3,10 +3,10 @@
 use zelus_linear_algebra::{Csr, LinearSolver, SolveError, SolveReport, System, vector};
 
 use super::condensing;
-use super::gathered::Gathered;
-use super::meaning::{Meaning, Meanings};
-use super::shared_rows::{Share, SharedRows};
-use super::whereabouts::{body_of, whereabouts};
+use super::distributed_rows::{DistributedRows, SystemShare};
+use super::dof_name::{DofName, DofNames};
+use super::location::{body_of, location};
+use super::root_gather::RootGather;
 use crate::assembly::{Assembler, DofTable, WholeSystem};
 use crate::diagnostics::Error;
 use crate::model::{ModelPart, Nodes};
@@ -50,7 +50,7 @@ impl Failed {
             let body = body_of(&part.tree, node);
             if !bodies.contains(&body) {
                 bodies.push(body);
-                places.push(format!("node {}{}", part.nodes.ids[node as usize], whereabouts(part, node)));
+                places.push(format!("node {}{}", part.nodes.ids[node as usize], location(part, node)));
             }
         }
         let places = part.ranks.lines_of_all(places).join(", ");
@@ -85,29 +85,30 @@ impl From<Error> for Failed {
 pub(super) fn solve(
     assembler: &mut Assembler,
     solver: &mut dyn LinearSolver,
-    gathered: &mut Gathered,
+    root_gather: &mut RootGather,
     rhs: &[f64],
     dofs: &DofTable,
     nodes: &Nodes,
 ) -> Result<(Vec<f64>, SolveReport), Failed> {
     let is_here = assembler.numbering().is_none();
-    if is_here && assembler.has_whole() && solver.takes_held(assembler.equations().len(), assembler.entries()) {
+    if is_here && assembler.has_whole() && solver.takes_inactive_rows(assembler.equations().len(), assembler.entries())
+    {
         let (rhs, stamps) = (assembler.equations().expand(rhs), assembler.merged_stamps());
-        let meaning = |number: usize| Some(Meaning::of(dofs, nodes, number as u32));
+        let dof_name = |number: usize| Some(DofName::of(dofs, nodes, number as u32));
         let (increment, report) =
-            assembler.with_whole(|_, whole| solve_here(&whole.system, whole.loads, stamps, solver, &rhs, &meaning))?;
+            assembler.with_whole(|_, whole| solve_here(&whole.system, whole.loads, stamps, solver, &rhs, &dof_name))?;
         return Ok((assembler.equations().reduce(&increment), report));
     }
     if is_here {
         assembler.reduce();
         let (loads, system) = (assembler.load_tangents().cloned(), assembler.system());
         let unknowns = assembler.equations().unknowns();
-        let meaning = |equation: usize| unknowns.get(equation).map(|&number| Meaning::of(dofs, nodes, number));
-        return solve_here(&system, loads.as_ref(), assembler.merged_stamps(), solver, rhs, &meaning);
+        let dof_name = |equation: usize| unknowns.get(equation).map(|&number| DofName::of(dofs, nodes, number));
+        return solve_here(&system, loads.as_ref(), assembler.merged_stamps(), solver, rhs, &dof_name);
     }
     let mut why = None;
-    if !gathered.has_petsc() && is_shared(assembler, solver) {
-        match solve_shared(assembler, solver, &mut gathered.shared, rhs, dofs, nodes) {
+    if !root_gather.has_petsc() && is_shared(assembler, solver) {
+        match solve_shared(assembler, solver, &mut root_gather.shared, rhs, dofs, nodes) {
             Ok((own, report)) => return Ok((assembler.complete(&own), report)),
             Err(error) => why = Some(format!("over all ranks: {error}")),
         }
@@ -116,18 +117,18 @@ pub(super) fn solve(
     let (loads, system) = (assembler.load_tangents().cloned(), assembler.system());
     let (numbering, ranks) = (assembler.numbering().expect("several ranks"), assembler.ranks());
     #[cfg(feature = "petsc")]
-    if let Some(rows) = &mut gathered.petsc {
+    if let Some(rows) = &mut root_gather.petsc {
         let solved = rows.solve(assembler, numbering, loads.as_ref(), dofs, nodes, rhs)?;
-        return solved.map_err(|error| explain(&error, None, &|equation| rows.meaning(equation)));
+        return solved.map_err(|error| explain(&error, None, &|equation| rows.dof_name(equation)));
     }
-    gathered.update(assembler, loads.as_ref(), dofs, nodes);
-    let rhs = gathered.gather(ranks, rhs, numbering);
-    let (whole, loads) = gathered.system(&system);
+    root_gather.update(assembler, loads.as_ref(), dofs, nodes);
+    let rhs = root_gather.gather(ranks, rhs, numbering);
+    let (whole, loads) = root_gather.system(&system);
     let solved = if ranks.is_root() {
         let stamps = assembler.merged_stamps();
-        let meanings = gathered.meanings();
-        gathered.while_others_wait(|| {
-            solve_here(&whole, loads, stamps, solver, &rhs, &|equation| meanings.get(equation).copied())
+        let dof_names = root_gather.dof_names();
+        root_gather.while_others_wait(|| {
+            solve_here(&whole, loads, stamps, solver, &rhs, &|equation| dof_names.get(equation).copied())
         })
     } else {
         Ok((Vec::new(), elsewhere()))
@@ -143,7 +144,7 @@ pub(super) fn solve(
     let (increment, mut report) = ranks.agree(solved.map_err(Error::from))?;
     let reasons = [why, report.fallback.take()];
     report.fallback = reasons.into_iter().flatten().reduce(|first, then| first + "; " + &then);
-    Ok((assembler.complete(&gathered.scatter(ranks, &increment, numbering)), report))
+    Ok((assembler.complete(&root_gather.scatter(ranks, &increment, numbering)), report))
 }
 
 /// Whether `solver` works where the rows are, on all ranks or on none; collective.
@@ -158,12 +159,12 @@ fn is_shared(assembler: &Assembler, solver: &dyn LinearSolver) -> bool {
 fn solve_shared(
     assembler: &mut Assembler,
     solver: &mut dyn LinearSolver,
-    shared: &mut SharedRows,
+    shared: &mut DistributedRows,
     rhs: &[f64],
     dofs: &DofTable,
     nodes: &Nodes,
 ) -> Result<(Vec<f64>, SolveReport), SolveError> {
-    let mut solve = |share: Share<'_>, rhs: &[f64]| {
+    let mut solve = |share: SystemShare<'_>, rhs: &[f64]| {
         shared.update(&share, dofs, nodes);
         let own = shared.of_own(share.numbering, rhs);
         let mut increment = vec![0.0; own.len()];
@@ -174,12 +175,12 @@ fn solve_shared(
         let rhs = assembler.equations().expand(rhs);
         return assembler.with_whole(|assembler, WholeSystem { system, loads }| {
             let numbering = assembler.whole_numbering().expect("no unknown follows others");
-            solve(Share { ranks: assembler.ranks(), numbering, system, loads, unknowns: None }, &rhs)
+            solve(SystemShare { ranks: assembler.ranks(), numbering, system, loads, unknowns: None }, &rhs)
         });
     }
     assembler.reduce();
     let loads = assembler.load_tangents().cloned();
-    let share = Share {
+    let share = SystemShare {
         ranks: assembler.ranks(),
         numbering: assembler.numbering().expect("several ranks"),
         system: assembler.system(),
@@ -213,9 +214,9 @@ fn solve_here(
     merged_stamps: [u64; 2],
     solver: &mut dyn LinearSolver,
     rhs: &[f64],
-    meaning: Meanings<'_>,
+    dof_name: DofNames<'_>,
 ) -> Result<(Vec<f64>, SolveReport), Failed> {
-    let explain = |error: SolveError| explain(&error, Some(system), meaning);
+    let explain = |error: SolveError| explain(&error, Some(system), dof_name);
     let mut increment = vec![0.0; rhs.len()];
     if let Some(loads) = loads
         && solver.takes_loads(system)
@@ -241,7 +242,7 @@ fn solve_here(
     for _ in 0..CORRECTIONS {
         system.residual(rhs, &increment, &mut residual);
         loads.mul_vec_subtract(&increment, &mut residual);
-        system.clear_held(&mut residual);
+        system.clear_inactive(&mut residual);
         let size = vector::norm(&residual);
         report.relative_residual = if scale > 0.0 { size / scale } else { 0.0 };
         if report.relative_residual <= ACCURACY {
@@ -274,9 +275,9 @@ fn solve_here(
     Ok((increment, merged))
 }
 
-fn explain(error: &SolveError, system: Option<&System<'_>>, meaning: Meanings<'_>) -> Failed {
+fn explain(error: &SolveError, system: Option<&System<'_>>, dof_name: DofNames<'_>) -> Failed {
     if let SolveError::NotCondensable(refused) = error {
-        let (fact, remedy) = (condensing::fact(*refused, meaning), condensing::remedy(*refused));
+        let (fact, remedy) = (condensing::fact(*refused, dof_name), condensing::remedy(*refused));
         return Failed::Other(Error::System(format!("linear solve: {fact}\n    {remedy}")));
     }
     if let SolveError::NotConverged { engine: "direct", .. } = error {
@@ -286,8 +287,8 @@ fn explain(error: &SolveError, system: Option<&System<'_>>, meaning: Meanings<'_
         return Failed::Other(Error::System(format!("linear solve: {error}")));
     };
     let names: Vec<String> =
-        equations.iter().take(6).filter_map(|&e| meaning(e)).map(|meaning| meaning.to_string()).collect();
-    let only_multipliers = equations.iter().all(|&e| meaning(e).is_some_and(|meaning| meaning.multiplier));
+        equations.iter().take(6).filter_map(|&e| dof_name(e)).map(|dof_name| dof_name.to_string()).collect();
+    let only_multipliers = equations.iter().all(|&e| dof_name(e).is_some_and(|dof_name| dof_name.multiplier));
     let rank = match rank_deficiency {
         _ if only_multipliers => system.and_then(|system| {
             let rank = zelus_linear_algebra::rank(system)?;
@@ -302,9 +303,9 @@ fn explain(error: &SolveError, system: Option<&System<'_>>, meaning: Meanings<'_
     } else {
         "some body can move freely: support it, or check that contact holds it from the first step"
     };
-    let free = equations.iter().filter_map(|&e| meaning(e)).filter(|meaning| !meaning.multiplier);
+    let free = equations.iter().filter_map(|&e| dof_name(e)).filter(|dof_name| !dof_name.multiplier);
     Failed::Singular(
         format!("the system of equations is singular{rank}; suspicious: {}\n    {remedy}", names.join(", ")),
-        free.map(|meaning| meaning.node).collect(),
+        free.map(|dof_name| dof_name.node).collect(),
     )
 }

@@ -145,15 +145,19 @@ fn direct(_: &LinearSolverRequest<'_>) -> Result<Box<dyn LinearSolver>> {
 }
 
 /// Multigrid by the settings of a deck, with the direct engine below `least` equations where they do not say otherwise, and where it
-/// costs less if multigrid `yields`.
-fn multigrid_from(request: &LinearSolverRequest<'_>, least: [usize; 2], yields: bool) -> Result<Box<dyn LinearSolver>> {
+/// costs less if multigrid `falls_back`.
+fn multigrid_from(
+    request: &LinearSolverRequest<'_>,
+    least: [usize; 2],
+    falls_back: bool,
+) -> Result<Box<dyn LinearSolver>> {
     let number = |key: &str| request.settings.node().get(key).and_then(|n| n.as_f64());
     let tolerance = number("tolerance").map_or(request.tolerance, |tolerance| tolerance.min(request.tolerance));
     Ok(create(Engine::Multigrid(MultigridSettings {
         tolerance,
         loosest: if number("tolerance").is_some() { tolerance } else { LOOSEST },
         least: number("direct_below").map_or(least, |equations| [equations as usize; 2]),
-        yields,
+        falls_back,
         ..MultigridSettings::default()
     })))
 }

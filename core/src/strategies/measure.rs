@@ -2,7 +2,9 @@
 
 use std::cell::LazyCell;
 
-use super::criterion::{Block, Check, ConvergenceCriterion, Measures, Norm, Verdict, is_last_digit, is_round_off};
+use super::criterion::{
+    Block, ConvergenceCheck, ConvergenceCriterion, Measures, Norm, Verdict, is_last_digit, is_round_off,
+};
 use crate::diagnostics::Result;
 use crate::parameters::Settings;
 
@@ -89,7 +91,7 @@ impl Measure {
     }
 
     /// Measures, and says whether that is good enough; collective.
-    pub fn check(&self, measures: &Measures<'_>) -> Check {
+    pub fn check(&self, measures: &Measures<'_>) -> ConvergenceCheck {
         let norms = |vector: &[f64]| measures.norms(vector, self.block, self.apart);
         let residuals = norms(measures.residual);
         let round_offs = LazyCell::new(|| norms(&measures.round_off));
@@ -113,7 +115,8 @@ impl Measure {
                     let reference = if total.size > 0.0 { total.size } else { norm.size };
                     self.of_variable(norm, reference, || is_last_digit(norm.size, total.size))
                 };
-                let mut checks: Vec<Check> = norms(measures.increment).into_iter().zip(&totals).map(check).collect();
+                let mut checks: Vec<ConvergenceCheck> =
+                    norms(measures.increment).into_iter().zip(&totals).map(check).collect();
                 // An unknown that is zero but for round-off moves by as much as its value: it does not hold up other variables.
                 if checks.iter().any(|check| check.converged) {
                     for (kind, check) in checks.iter_mut().enumerate() {
@@ -123,19 +126,21 @@ impl Measure {
                 checks
             }
         };
-        let worse = |a: &Check, b: &Check| b.converged.cmp(&a.converged).then(a.ratio.total_cmp(&b.ratio));
+        let worse = |a: &ConvergenceCheck, b: &ConvergenceCheck| {
+            b.converged.cmp(&a.converged).then(a.ratio.total_cmp(&b.ratio))
+        };
         checks.sort_by(worse);
         checks.pop().unwrap_or_else(|| self.of_variable(Norm::default(), 0.0, || true))
     }
 
     /// One variable: its norm against `reference`; `done` says whether it can become no smaller.
-    fn of_variable(&self, norm: Norm, reference: f64, done: impl FnOnce() -> bool) -> Check {
+    fn of_variable(&self, norm: Norm, reference: f64, done: impl FnOnce() -> bool) -> ConvergenceCheck {
         let ratio = if norm.size > 0.0 && reference > 0.0 { norm.size / reference } else { 0.0 };
         let count = norm.count.max(1) as f64;
         // As Kratos divides: residuals of all unknowns by their number, all else by its root.
         let absolute =
             norm.size / if (self.block, self.form) == (Block::All, Form::Residual) { count } else { count.sqrt() };
-        Check {
+        ConvergenceCheck {
             label: match (self.block, self.form) {
                 (Block::Multiplier, Form::Residual) => "multiplier residual",
                 (Block::Multiplier, Form::Increment) => "multiplier increment",
@@ -167,15 +172,15 @@ mod tests {
     use super::*;
     use crate::assembly::{DofTable, Equations};
     use crate::model::test_variables::{DISPLACEMENT, VELOCITY};
-    use crate::model::{Carriers, ModelPart, Nodes};
+    use crate::model::{DofOwners, ModelPart, Nodes};
 
     /// Measures two variables at two nodes each, the second in a unit in which its numbers are `unit` times as large.
-    fn check(form: Form, apart: bool, unit: f64, [start, now, moved]: [[f64; 2]; 3]) -> Check {
+    fn check(form: Form, apart: bool, unit: f64, [start, now, moved]: [[f64; 2]; 3]) -> ConvergenceCheck {
         let mut part = ModelPart::new("Structure");
         part.nodes = Nodes::new(vec![1, 2], vec![[0.0; 3], [1.0, 0.0, 0.0]]);
         let mut dofs = DofTable::default();
         let carriers = [DISPLACEMENT.component(0), VELOCITY.component(0)];
-        dofs.number(&part, &carriers.map(|variable| Carriers::of_nodes(variable, vec![0, 1])), &[]);
+        dofs.number(&part, &carriers.map(|variable| DofOwners::of_nodes(variable, vec![0, 1])), &[]);
         let equations = Equations::new(&dofs, &part).unwrap();
         let of = |[one, other]: [f64; 2]| vec![one, unit * other, one, unit * other];
         let tolerance = Tolerance { relative: 1e-4, absolute: 0.0 };

@@ -26,7 +26,7 @@ pub(super) struct Size {
 impl Size {
     fn needed(self, solver: &dyn LinearSolver) -> u64 {
         let [whole, reduced] = ASSEMBLED;
-        let is_one = !self.reduced && solver.takes_held(self.unknowns, self.entries);
+        let is_one = !self.reduced && solver.takes_inactive_rows(self.unknowns, self.entries);
         let assembled = if is_one { whole } else { whole + reduced };
         self.entries as u64 * assembled + solver.needs(self.unknowns, self.entries)
     }

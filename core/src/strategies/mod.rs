@@ -4,7 +4,7 @@
 //! [`NewtonRaphson`] iterates, [`ExplicitStrategy`] does without. The active set of contact is a stage of each iteration, see
 //! [`crate::entities::ActiveSet::after_update`].
 
-mod account;
+mod energy_balance;
 mod arc_length;
 mod balance;
 mod body_balance;
@@ -13,28 +13,28 @@ mod bossak_scheme;
 mod builder;
 mod central_differences;
 mod condensing;
-mod contraction;
+mod convergence_rate;
 mod criterion;
 mod critical_step;
 mod displacement_criterion;
 mod explicit;
-mod places;
-mod shared_rows;
-mod gathered;
+mod local_to_global;
+mod distributed_rows;
+mod root_gather;
 mod generalized_alpha_scheme;
-mod left_out;
+mod omitted_fields;
 mod line_search;
 mod linear_solve;
 mod linear_solvers;
-mod meaning;
+mod dof_name;
 mod measure;
 mod memory;
 mod newton;
 mod newton_strategies;
 #[cfg(feature = "petsc")]
-mod owned_condensation;
+mod petsc_condensation;
 #[cfg(feature = "petsc")]
-mod owned_rows;
+mod petsc_rows;
 mod phases;
 mod pseudo_static_scheme;
 mod reactions;
@@ -43,20 +43,20 @@ mod residual_criterion;
 mod scheme;
 mod strategy;
 mod strategy_entry;
-mod whereabouts;
+mod location;
 
 pub use arc_length::{ArcLength, ArcLengthSettings};
-pub use balance::{Balance, Energies, Flows, PairBalance, Sums, UnknownBalance};
+pub use balance::{Balance, BalanceTerms, Energies, Flows, PairBalance, UnknownBalance};
 pub use bdf_scheme::BdfScheme;
 pub use body_balance::BodyBalance;
 pub use bossak_scheme::BossakScheme;
-pub use builder::{Builder, BuilderEntry};
+pub use builder::{BuilderAction, BuilderEntry};
 pub use central_differences::CentralDifferences;
 pub(crate) use condensing::multipliers;
 pub use condensing::{OFF_NODE_TOLERANCE, ZERO_ROW_TOLERANCE};
 pub use criterion::{
-    Block, Check, ConvergenceCriterion, CriterionEntry, CriterionFactory, CriterionRequest, Measures, Norm, Verdict,
-    both, either, is_last_digit, is_round_off,
+    Block, ConvergenceCheck, ConvergenceCriterion, CriterionEntry, CriterionFactory, CriterionRequest, Measures, Norm,
+    Verdict, both, either, is_last_digit, is_round_off,
 };
 pub use critical_step::critical_step;
 pub use explicit::{CRITICAL_STEP, ExplicitSettings, ExplicitStrategy};
@@ -66,6 +66,7 @@ pub use linear_solvers::{LinearSolverEntry, LinearSolverFactory, LinearSolverReq
 pub(crate) use linear_solvers::{
     frugal as frugal_linear_solver, make as make_linear_solver, tolerance as linear_tolerance, unknowns_of_all,
 };
+pub(crate) use location::{body_in_words, location};
 pub use measure::{Form, Measure, Tolerance};
 pub use newton::{ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
 pub use phases::Phases;
@@ -75,4 +76,3 @@ pub use records::{IterationRecord, Monitor, Plan, Silent, StepRecord};
 pub use scheme::{Scheme, SchemeEntry, SchemeFactory, SchemeRequest, StaticScheme};
 pub use strategy::{Linearized, SolutionStrategy, accept, recorded};
 pub use strategy_entry::{StrategyEntry, StrategyFactory, StrategyRequest};
-pub(crate) use whereabouts::{body_in_words, whereabouts};

@@ -1,6 +1,6 @@
 //! Newton's iteration of one step, semi-smooth where an active set changes.
 
-mod complementary;
+mod joint_decision;
 mod followers;
 mod iteration;
 mod lost_body;
@@ -13,25 +13,25 @@ use std::time::Instant;
 use serde::{Deserialize, Serialize};
 #[cfg(feature = "petsc")]
 use zelus_linear_algebra::Multipliers;
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
 use zelus_linear_algebra::{LinearSolver, SolveReport};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
 pub(super) use references::References;
 
-use super::account::Account;
 use super::balance::Balance;
-use super::body_balance::{BodyBalance, Groups, Imbalance};
+use super::body_balance::{BodyBalance, BodyDofs, Imbalance};
 use super::condensing;
 use super::criterion::{ConvergenceCriterion, Measures, Verdict};
-use super::gathered::Gathered;
+use super::dof_name::DofName;
+use super::energy_balance::EnergyBalance;
 use super::line_search::LineSearch;
 use super::linear_solve::{self, Failed, Solved};
-use super::meaning::Meaning;
+use super::location::location;
 use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
+use super::root_gather::RootGather;
 use super::scheme::Scheme;
 use super::strategy::{Linearized, SolutionStrategy, accept, is_of_entities, recorded};
-use super::whereabouts::whereabouts;
 use crate::assembly::{Assembler, AssemblerState, System, impose_constraints};
 use crate::diagnostics::unfit;
 use crate::diagnostics::{Diagnostic, Place, Result};
@@ -80,7 +80,7 @@ pub struct NewtonRaphson {
     failed: bool,
     /// Whether it searches along increments, since the step has failed without that.
     searches: bool,
-    pub(super) gathered: Gathered,
+    pub(super) root_gather: RootGather,
     phases: Phases,
     /// Whether the last step ended at a singular system.
     singular: bool,
@@ -92,7 +92,7 @@ pub struct NewtonRaphson {
     /// Whether the run has been warned that multipliers are not condensed.
     warned_of_multipliers: bool,
     pub(super) messages: Vec<Diagnostic>,
-    pub(super) account: Account,
+    pub(super) energy_balance: EnergyBalance,
     /// Balance of the step that has just converged.
     pub(super) balance: Option<Balance>,
     /// Bodies of the part, once a state has converged.
@@ -110,17 +110,17 @@ struct NewtonState {
     scheme: Option<Box<dyn State>>,
     solver: Option<Box<dyn State>>,
     assembler: AssemblerState,
-    account: Account,
+    energy_balance: EnergyBalance,
 }
 
 stored_as_bytes!(NewtonState);
 
 #[typetag::serde(name = "newton_raphson")]
 impl State for NewtonState {
-    fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.assembler.carry(carrier);
-        self.scheme.iter_mut().chain(&mut self.solver).for_each(|state| state.carry(carrier));
-        self.account.carry(carrier);
+    fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        self.assembler.remap(mapper);
+        self.scheme.iter_mut().chain(&mut self.solver).for_each(|state| state.remap(mapper));
+        self.energy_balance.remap(mapper);
     }
 }
 
@@ -144,19 +144,19 @@ impl SolutionStrategy for NewtonRaphson {
             scheme: self.scheme.state(),
             solver: self.solver.state(),
             assembler: self.assembler.state(),
-            account: self.account.clone(),
+            energy_balance: self.energy_balance.clone(),
         }))
     }
 
     fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
-        let NewtonState { failed, warned, scheme, solver, assembler, account } = state.take()?;
+        let NewtonState { failed, warned, scheme, solver, assembler, energy_balance } = state.take()?;
         let unknowns = system.dofs.len();
-        (self.failed, self.account) = (failed, account);
+        (self.failed, self.energy_balance) = (failed, energy_balance);
         [self.warned, self.warned_of_multipliers] = warned;
         self.assembler.resume(part, system, assembler)?;
         scheme.map_or(Ok(()), |state| self.scheme.resume(state))?;
         let forces = self.scheme.kept().map_or(unknowns, |forces| forces.len());
-        if forces != unknowns || !self.account.is_of(unknowns) {
+        if forces != unknowns || !self.energy_balance.is_of(unknowns) {
             return Err(unfit("the forces it remembers are not those of its unknowns"));
         }
         solver.map_or(Ok(()), |state| self.solver.resume(state))?;
@@ -184,7 +184,7 @@ impl SolutionStrategy for NewtonRaphson {
         Ok(StepRecord { singular: self.singular, coarse, balance, ..record? })
     }
 
-    fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
+    fn finalize_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
         if self.scheme.keeps_forces()
             && let Some(inertia) = self.scheme.inertia(part, &system.dofs)
         {
@@ -196,7 +196,7 @@ impl SolutionStrategy for NewtonRaphson {
             self.measure_energy(part, system)?;
         }
         self.searches = false;
-        self.account.accept();
+        self.energy_balance.accept();
         let start = Instant::now();
         let accepted = accept(part, system);
         self.phases.since("accept", start);
@@ -219,7 +219,7 @@ impl Linearized for NewtonRaphson {
     }
 
     fn answer(&mut self, part: &ModelPart, system: &System, out_of_balance: &[f64]) -> Result<Vec<f64>> {
-        self.solver.aim(0.0);
+        self.solver.set_forcing_term(0.0);
         let rhs = self.assembler.equations().reduce(out_of_balance);
         let solved = self.solve(part, system, &rhs)?;
         Ok(self.assembler.equations().expand(&solved.increment))
@@ -241,7 +241,7 @@ impl NewtonRaphson {
             criterion,
             solver,
             assembler,
-            gathered: Gathered::default(),
+            root_gather: RootGather::default(),
             failed: false,
             searches: false,
             phases: Phases::default(),
@@ -251,7 +251,7 @@ impl NewtonRaphson {
             solver_place: None,
             warned_of_multipliers: false,
             messages: Vec::new(),
-            account: Account::default(),
+            energy_balance: EnergyBalance::default(),
             balance: None,
             bodies: None,
             warned_of_balance: false,
@@ -272,8 +272,8 @@ impl NewtonRaphson {
         multipliers: Multipliers,
     ) {
         let condensing = if let Multipliers::Condense(settings) = multipliers { Some(settings) } else { None };
-        self.gathered.petsc =
-            Some(super::owned_rows::OwnedRows::new(self.assembler.ranks(), communicator, settings, condensing));
+        self.root_gather.petsc =
+            Some(super::petsc_rows::PetscRows::new(self.assembler.ranks(), communicator, settings, condensing));
     }
 
     /// Keeps the balance of a converged state; `more` are loads that the assembler does not know of. Gives the body that is out
@@ -288,7 +288,8 @@ impl NewtonRaphson {
     ) -> Result<Option<Imbalance>> {
         let start = Instant::now();
         let inertia = self.scheme.inertia(part, &system.dofs);
-        let balance = self.account.balance(part, system, &mut self.assembler, residual, inertia.as_ref(), more)?;
+        let balance =
+            self.energy_balance.balance(part, system, &mut self.assembler, residual, inertia.as_ref(), more)?;
         self.balance = Some(balance);
         let rule = self.settings.body_balance;
         let imbalance = match rule {
@@ -321,12 +322,12 @@ impl NewtonRaphson {
         residual: &[f64],
         references: &References,
     ) -> Option<Imbalance> {
-        let forces = self.account.pending_forces()?;
+        let forces = self.energy_balance.pending_forces()?;
         let bodies = self.bodies.get_or_insert_with(|| NumberedBodies::of(part));
         let tolerance = self.criterion.residual_tolerance().unwrap_or(BALANCE_TOLERANCE);
         let balanced = self.assembler.equations().balanced(residual);
         let start = references.start.first()?;
-        let groups = Groups::new(bodies, system, &self.assembler);
+        let groups = BodyDofs::new(bodies, system, &self.assembler);
         Imbalance::largest(&groups, part, [&balanced, start], forces, tolerance)
     }
 
@@ -347,9 +348,9 @@ impl NewtonRaphson {
             let increment = vec![0.0; rhs.len()];
             return Ok(Solved { increment, relative_residual: 0.0, iterations: 0, engine, fallback: None });
         }
-        let (solver, gathered) = (self.solver.as_mut(), &mut self.gathered);
+        let (solver, root_gather) = (self.solver.as_mut(), &mut self.root_gather);
         let (start, assembling) = (Instant::now(), self.assembler.seconds.bulk);
-        let solved = linear_solve::solve(&mut self.assembler, solver, gathered, rhs, &system.dofs, &part.nodes);
+        let solved = linear_solve::solve(&mut self.assembler, solver, root_gather, rhs, &system.dofs, &part.nodes);
         let known = solved.as_ref().map_or([0.0; 2], |(_, report)| [report.seconds_symbolic, report.seconds_numeric]);
         self.phases.add("linear: order", known[0]);
         self.phases.add("linear: factor", known[1]);
@@ -358,16 +359,16 @@ impl NewtonRaphson {
         self.phases.add("linear: solve", start.elapsed().as_secs_f64() - known);
         let (increment, report) = solved.map_err(|failed| failed.in_part(part))?;
         let SolveReport { engine, relative_residual, iterations, mut fallback, .. } = report;
-        if let Some(refused) = self.solver.not_condensed().or(self.gathered.not_condensed()) {
+        if let Some(refused) = self.solver.not_condensed().or(self.root_gather.not_condensed()) {
             // Said once, and with the names of nodes.
             fallback = None;
             if !std::mem::replace(&mut self.warned_of_multipliers, true) {
                 let unknowns = self.assembler.equations().unknowns();
-                let meaning = |equation: usize| match self.assembler.numbering() {
-                    Some(_) => self.gathered.meaning(equation),
-                    None => unknowns.get(equation).map(|&number| Meaning::of(&system.dofs, &part.nodes, number)),
+                let dof_name = |equation: usize| match self.assembler.numbering() {
+                    Some(_) => self.root_gather.dof_name(equation),
+                    None => unknowns.get(equation).map(|&number| DofName::of(&system.dofs, &part.nodes, number)),
                 };
-                self.messages.push(condensing::warning(refused, &meaning, self.solver_place.as_ref()));
+                self.messages.push(condensing::warning(refused, &dof_name, self.solver_place.as_ref()));
             }
         }
         Ok(Solved { increment, relative_residual, iterations, engine: engine.to_owned(), fallback })
@@ -403,7 +404,7 @@ impl NewtonRaphson {
     pub(super) fn first_infinite(&self, part: &ModelPart, system: &System, residual: &[f64]) -> Option<String> {
         let values = self.assembler.values(part, system);
         let broken = (0..values.len()).find(|&n| !(residual[n].is_finite() && values[n].is_finite())).map(|n| {
-            let unknown = Meaning::of(&system.dofs, &part.nodes, n as u32);
+            let unknown = DofName::of(&system.dofs, &part.nodes, n as u32);
             if !values[n].is_finite() {
                 return format!("{unknown} is {}", values[n]);
             }
@@ -487,8 +488,8 @@ impl NewtonRaphson {
         self.assembler.reduce();
         let mut matrices = self.assembler.system();
         if self.assembler.numbering().is_some() {
-            self.gathered.update(&self.assembler, None, &system.dofs, &part.nodes);
-            matrices = self.gathered.system(&matrices).0;
+            self.root_gather.update(&self.assembler, None, &system.dofs, &part.nodes);
+            matrices = self.root_gather.system(&matrices).0;
         }
         if !part.ranks.is_root() {
             return None;
@@ -510,8 +511,8 @@ impl NewtonRaphson {
         let largest = part.ranks.gather_numbers(&[worst.map_or(-1.0, size)]).concat().into_iter().fold(-1.0, f64::max);
         let said = worst.filter(|&n| size(n) >= largest).map(|n| {
             let value = balanced[n as usize];
-            let at = whereabouts(part, system.dofs.dofs()[n as usize].node);
-            format!("; largest residual {value:.3e} at {}{at}", Meaning::of(&system.dofs, &part.nodes, n))
+            let at = location(part, system.dofs.dofs()[n as usize].node);
+            format!("; largest residual {value:.3e} at {}{at}", DofName::of(&system.dofs, &part.nodes, n))
         });
         part.ranks.first_to_say(said)
     }
@@ -547,5 +548,5 @@ impl NewtonRaphson {
 fn state_of(part: &ModelPart, system: &System, id: usize) -> Option<String> {
     let node = part.nodes.ids.binary_search(&id).ok()? as u32;
     let state = system.interactions.iter().find_map(|interaction| interaction.node_state(node))?;
-    Some(format!("node {id}{} {state}", whereabouts(part, node)))
+    Some(format!("node {id}{} {state}", location(part, node)))
 }

@@ -1,9 +1,9 @@
 //! Records of a step for the log and the report of the run.
 
 use super::balance::Balance;
-use super::criterion::Check;
-use super::left_out::left_out_of_json;
+use super::criterion::ConvergenceCheck;
 use super::linear_solve::Solved;
+use super::omitted_fields::omitted_from_json;
 use crate::entities::SetChange;
 
 /// Relative difference of measures that a step of another length leaves where it only scales the problem, and the measure below
@@ -21,7 +21,7 @@ pub struct IterationRecord {
     /// From 1.
     pub iteration: usize,
     /// Measurements of the criteria.
-    pub checks: Vec<Check>,
+    pub checks: Vec<ConvergenceCheck>,
     /// Nodes that became active or inactive.
     pub active_set_changes: usize,
     /// Nodes that changed between stick and slip.
@@ -39,11 +39,11 @@ pub struct IterationRecord {
     pub condition_number: Option<f64>,
 }
 
-left_out_of_json!(IterationRecord, "condition_number");
+omitted_from_json!(IterationRecord, "condition_number");
 
 impl IterationRecord {
     /// Record of an iteration with this solve: the measurements of the criteria, and the changes of the interactions.
-    pub(super) fn new(iteration: usize, checks: Vec<Check>, change: &SetChange, solved: &Solved) -> Self {
+    pub(super) fn new(iteration: usize, checks: Vec<ConvergenceCheck>, change: &SetChange, solved: &Solved) -> Self {
         let changed = change.activated.iter().chain(&change.deactivated).chain(&change.stick_slip);
         Self {
             iteration,
@@ -88,7 +88,7 @@ pub struct StepRecord {
     pub balance: Option<Balance>,
 }
 
-left_out_of_json!(StepRecord, "balance");
+omitted_from_json!(StepRecord, "balance");
 
 impl StepRecord {
     /// Whether it failed within its iteration, and not because a state that had converged was refused.
@@ -104,7 +104,9 @@ impl StepRecord {
     /// Where nothing but the size of the load tells two steps apart, as without a gap, friction or curvature, a shorter one
     /// is the same problem.
     pub fn fails_like(&self, other: &Self) -> bool {
-        let alike = |a: &Check, b: &Check| (a.ratio - b.ratio).abs() <= SAME * a.ratio.max(b.ratio) + NONE;
+        let alike = |a: &ConvergenceCheck, b: &ConvergenceCheck| {
+            (a.ratio - b.ratio).abs() <= SAME * a.ratio.max(b.ratio) + NONE
+        };
         let same = |(a, b): (&IterationRecord, &IterationRecord)| {
             a.active_set_changes == b.active_set_changes
                 && a.stick_slip_changes == b.stick_slip_changes

@@ -2,9 +2,9 @@
 
 use zelus_linear_algebra::State;
 
+use super::location::inside_out;
 use super::phases::Phases;
 use super::records::{IterationRecord, Monitor, StepRecord};
-use super::whereabouts::inside_out;
 use crate::assembly::{Assembler, System};
 use crate::diagnostics::{Diagnostic, Error, Result};
 use crate::entities::{Interaction, SetChange};
@@ -57,7 +57,7 @@ pub trait SolutionStrategy: Send {
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()>;
+    fn finalize_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()>;
 
     /// Notes and warnings since they were last asked for; the stage passes them on.
     fn messages(&mut self) -> Vec<Diagnostic> {
@@ -118,9 +118,9 @@ pub trait Linearized {
 /// # Errors
 /// An entity that cannot be computed.
 pub fn accept(part: &mut ModelPart, system: &mut System) -> Result<()> {
-    let result = system.elements.iter_mut().try_for_each(|block| block.accept_step(&part.view()));
+    let result = system.elements.iter_mut().try_for_each(|block| block.finalize_step(&part.view()));
     part.ranks.agree(result.map_err(Error::from))?;
-    system.interactions.iter_mut().try_for_each(|interaction| interaction.accept_step(part))
+    system.interactions.iter_mut().try_for_each(|interaction| interaction.finalize_step(part))
 }
 
 /// The prediction is made: lets the interactions follow it.

@@ -5,7 +5,7 @@
 use zelus::structural_mechanics::variables::DISPLACEMENT;
 use zelus_core::Result;
 use zelus_core::entities::{
-    BlockRequest, Build, ElementEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+    BlockRequest, Build, ElementEntry, EntityView, Kernel, KernelBlock, LocalUnknown, Request, StepView, Tangent,
 };
 use zelus_core::geometry::Shape;
 use zelus_core::vector3::{dot, normalised, scale, sub};
@@ -29,7 +29,7 @@ impl Kernel<2, 4> for AxialSpring {
         Ok(Self)
     }
 
-    fn state(&self, entity: &Gather<'_, 2>, _view: &StepView<'_>) -> Result<f64, String> {
+    fn state(&self, entity: &EntityView<'_, 2>, _view: &StepView<'_>) -> Result<f64, String> {
         entity.properties.require("AXIAL_STIFFNESS").map_err(|problem| problem.to_string())
     }
 
@@ -39,14 +39,14 @@ impl Kernel<2, 4> for AxialSpring {
 
     fn local_system(
         &self,
-        entity: &Gather<'_, 2>,
+        entity: &EntityView<'_, 2>,
         stiffness: &f64,
         view: &StepView<'_>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; 4],
     ) -> Result<(), String> {
-        if want == Want::External {
+        if request == Request::External {
             return Ok(());
         }
         let along = normalised(sub(entity.initial[1], entity.initial[0]));

@@ -5,7 +5,7 @@ use zelus_core::analysis::{SolverDefinition, SolverEntry};
 use zelus_core::assembly::DofTable;
 use zelus_core::model::ModelPart;
 use zelus_core::strategies::{Scheme, SchemeEntry, SchemeFactory};
-use zelus_core::{Carrier, Result, State, register};
+use zelus_core::{Result, State, StateMapper, register};
 
 #[derive(Clone, Serialize, Deserialize)]
 struct Continued {
@@ -15,8 +15,8 @@ struct Continued {
 
 #[typetag::serde(name = "continued")]
 impl State for Continued {
-    fn carry(&mut self, carrier: &mut dyn Carrier) {
-        carrier.by_unknown(&mut self.before);
+    fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        mapper.by_unknown(&mut self.before);
     }
 }
 

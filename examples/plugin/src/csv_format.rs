@@ -4,16 +4,16 @@ use std::io::Write;
 
 use zelus_core::io::replace_file;
 use zelus_core::io::results::Values;
-use zelus_core::processes::{OutputFormat, OutputFormatEntry, Shown};
+use zelus_core::processes::{OutputFormat, OutputFormatEntry, OutputFrame};
 use zelus_core::{Result, register};
 
 struct Csv;
 
 impl OutputFormat for Csv {
-    fn write(&mut self, shown: &Shown<'_>) -> Result<()> {
-        let data = shown.data.gathered(&shown.part.ranks);
-        let path = shown.folder.join(format!("{}_{}.csv", shown.series, shown.label));
-        replace_file(&shown.part.ranks, &path, |file| {
+    fn write(&mut self, frame: &OutputFrame<'_>) -> Result<()> {
+        let data = frame.data.gathered(&frame.part.ranks);
+        let path = frame.folder.join(format!("{}_{}.csv", frame.series, frame.label));
+        replace_file(&frame.part.ranks, &path, |file| {
             write!(file, "id,x,y,z")?;
             for column in &data.point_data {
                 (0..column.components).try_for_each(|c| write!(file, ",{}_{c}", column.name))?;

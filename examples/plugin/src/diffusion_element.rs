@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::analysis::{SolverDefinition, SolverEntry};
 use zelus_core::entities::{
-    BlockRequest, Build, ElementEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+    BlockRequest, Build, ElementEntry, EntityView, Kernel, KernelBlock, LocalUnknown, Request, StepView, Tangent,
 };
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_core::{register, register_rates, register_variable};
@@ -70,7 +70,7 @@ impl Kernel<NODES, NODES> for Diffusion {
         Ok(Self { rule: ShapeTable::get(Shape::Quad4, 2) })
     }
 
-    fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<Material, String> {
+    fn state(&self, entity: &EntityView<'_, NODES>, _view: &StepView<'_>) -> Result<Material, String> {
         let property = |name| entity.properties.require(name).map_err(|problem| problem.to_string());
         if self.rule.dn::<NODES, 2>().iter().any(|dn| gradients(&entity.initial, dn).1 <= 0.0) {
             return Err("it is inverted".to_owned());
@@ -84,14 +84,14 @@ impl Kernel<NODES, NODES> for Diffusion {
 
     fn local_system(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         material: &Material,
         view: &StepView<'_>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; NODES],
     ) -> Result<(), String> {
-        if want == Want::External {
+        if request == Request::External {
             return Ok(());
         }
         let c = entity.scalars(view.nodes.history.values(&CONCENTRATION, 0));
@@ -115,7 +115,7 @@ impl Kernel<NODES, NODES> for Diffusion {
         true
     }
 
-    fn damping(&self, entity: &Gather<'_, NODES>, material: &Material, out: &mut [f64]) {
+    fn damping(&self, entity: &EntityView<'_, NODES>, material: &Material, out: &mut [f64]) {
         for (g, n) in self.rule.n::<NODES>().iter().enumerate() {
             let (_, determinant) = gradients(&entity.initial, &self.rule.dn::<NODES, 2>()[g]);
             let weight = self.rule.weight(g) * determinant * material.storage;

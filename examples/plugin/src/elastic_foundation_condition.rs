@@ -6,7 +6,7 @@
 use zelus::structural_mechanics::variables::DISPLACEMENT;
 use zelus_core::Result;
 use zelus_core::entities::{
-    BlockRequest, Build, ConditionEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+    BlockRequest, Build, ConditionEntry, EntityView, Kernel, KernelBlock, LocalUnknown, Request, StepView, Tangent,
 };
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_core::vector3::{norm, sub};
@@ -36,7 +36,7 @@ impl Kernel<NODES, SIZE> for ElasticFoundation {
         Ok(Self { rule: ShapeTable::get(Shape::Line2, 2) })
     }
 
-    fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<f64, String> {
+    fn state(&self, entity: &EntityView<'_, NODES>, _view: &StepView<'_>) -> Result<f64, String> {
         entity.properties.require("FOUNDATION_STIFFNESS").map_err(|problem| problem.to_string())
     }
 
@@ -46,14 +46,14 @@ impl Kernel<NODES, SIZE> for ElasticFoundation {
 
     fn local_system(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         stiffness: &f64,
         view: &StepView<'_>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) -> Result<(), String> {
-        if want == Want::External {
+        if request == Request::External {
             return Ok(());
         }
         let u = entity.vectors(view.nodes.history.values(&DISPLACEMENT, 0));

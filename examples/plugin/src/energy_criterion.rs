@@ -5,7 +5,9 @@
 use zelus_core::Result;
 use zelus_core::analysis::{ExtensionDefinition, SolverExtensionEntry};
 use zelus_core::register;
-use zelus_core::strategies::{Block, Check, ConvergenceCriterion, CriterionEntry, CriterionRequest, Measures, Verdict};
+use zelus_core::strategies::{
+    Block, ConvergenceCheck, ConvergenceCriterion, CriterionEntry, CriterionRequest, Measures, Verdict,
+};
 
 /// Defaults of the object `"energy_settings"` that a deck may write among its solver settings.
 const DEFAULTS: &str = r#"// Settings of energy_criterion.
@@ -33,7 +35,7 @@ impl ConvergenceCriterion for EnergyCriterion {
         let work_of_increment = work(measures, measures.residual, measures.increment);
         let reference = measures.references.first().map_or(0.0, |first| work(measures, first, measures.values));
         let ratio = if reference > 0.0 { work_of_increment / reference } else { work_of_increment };
-        Verdict::all(vec![Check {
+        Verdict::all(vec![ConvergenceCheck {
             label: "energy",
             ratio,
             ratio_tolerance: self.tolerance,

@@ -25,8 +25,8 @@ impl SolutionStrategy for Patient {
         Ok(record)
     }
 
-    fn accept_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
-        self.0.accept_step(part, system)
+    fn finalize_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
+        self.0.finalize_step(part, system)
     }
 
     fn messages(&mut self) -> Vec<Diagnostic> {

@@ -1,6 +1,6 @@
 //! A builder-and-solver that corrects each answer once by what it leaves.
 
-use zelus_core::strategies::{Builder, BuilderEntry};
+use zelus_core::strategies::{BuilderAction, BuilderEntry};
 use zelus_core::{State, WrongState, register};
 use zelus_linear_algebra::{LinearSolver, SolveError, SolveReport, System};
 
@@ -39,5 +39,5 @@ impl LinearSolver for Refining {
 register! { BuilderEntry "refining",
     about: "each answer is corrected once by what it leaves",
     source: "x ← x + A⁻¹ (b − A x)",
-    build: Builder::Around(|_settings, solver| Ok(Box::new(Refining(solver)))),
+    build: BuilderAction::Around(|_settings, solver| Ok(Box::new(Refining(solver)))),
 }

@@ -84,15 +84,15 @@ pub struct Condensation {
     symmetry: Symmetry,
     /// Equation of the whole system of each equation left.
     kept: Vec<u32>,
-    groups: Vec<Group>,
+    groups: Vec<NodeGroup>,
     /// Entries of multipliers in the equations of nodes without: equation left, multiplier, value.
-    loads: Vec<(u32, u32, f64)>,
+    master_couplings: Vec<(u32, u32, f64)>,
     stamp: u64,
 }
 
 /// The equations of a node with multipliers.
 #[derive(Debug, Clone, PartialEq)]
-struct Group {
+struct NodeGroup {
     /// Equations of the whole system, its own before those of its multipliers.
     equations: Vec<u32>,
     /// Number of its own; none where the multipliers do not act on them.
@@ -105,7 +105,7 @@ struct Group {
 const NONE: u32 = u32::MAX;
 
 /// Where each equation is.
-struct Places {
+struct EquationPlaces {
     /// Number among the equations left; [`NONE`] for a multiplier.
     left: Vec<u32>,
     /// Group of each equation; [`NONE`] where no multiplier of its node acts.
@@ -124,14 +124,14 @@ impl Condensation {
         let mut left = vec![NONE; n];
         let kept: Vec<u32> = (0..n as u32).filter(|&i| !layout.multiplier[i as usize]).collect();
         kept.iter().enumerate().for_each(|(at, &i)| left[i as usize] = at as u32);
-        let places = Places { left, group };
+        let places = EquationPlaces { left, group };
         let largest = columns_of_multipliers(system, &places, settings.off_node)?;
         let mut row = SparseRow::new(kept.len());
         let mut found = Vec::with_capacity(lists.len());
         for equations in lists {
             found.push(eliminate(system, &places, &largest, settings.zero_row, equations, &mut row)?);
         }
-        let mut loads = Vec::new();
+        let mut master_couplings = Vec::new();
         let mut matrix = Csr::empty(kept.len());
         matrix.columns.reserve(system.bulk.entries());
         matrix.values.reserve(system.bulk.entries());
@@ -142,11 +142,11 @@ impl Condensation {
                 if copy(system, i, &places.left, &mut matrix) {
                     continue;
                 }
-                let first = loads.len();
+                let first = master_couplings.len();
                 row.add_equation(system, i, 1.0, &places.left, |multiplier, value| {
-                    loads.push((at as u32, multiplier as u32, value));
+                    master_couplings.push((at as u32, multiplier as u32, value));
                 });
-                for &(_, multiplier, value) in &loads[first..] {
+                for &(_, multiplier, value) in &master_couplings[first..] {
                     touched = true;
                     let group = &found[places.group[multiplier as usize] as usize];
                     row.add(&group.recovery[group.place(multiplier)], -value);
@@ -163,7 +163,7 @@ impl Condensation {
         Ok(Self {
             matrix,
             layout: Layout {
-                held: Vec::new(),
+                inactive: Vec::new(),
                 node: kept.iter().map(|&i| layout.node[i as usize]).collect(),
                 multiplier: vec![false; kept.len()],
                 near_null_space: layout
@@ -175,7 +175,7 @@ impl Condensation {
             symmetry: if touched { Symmetry::General } else { system.bulk_symmetry },
             kept,
             groups: found,
-            loads,
+            master_couplings,
             stamp,
         })
     }
@@ -205,7 +205,7 @@ impl Condensation {
                 out[at] = group.times(group.row(equation), rhs);
             }
         }
-        for &(at, multiplier, value) in &self.loads {
+        for &(at, multiplier, value) in &self.master_couplings {
             out[at as usize] -= value * multipliers[multiplier as usize];
         }
         out
@@ -224,7 +224,7 @@ impl Condensation {
     }
 }
 
-impl Group {
+impl NodeGroup {
     fn place(&self, multiplier: u32) -> usize {
         self.equations[self.own..].iter().position(|&e| e == multiplier).expect("a multiplier of the group")
     }
@@ -305,7 +305,11 @@ fn couples(system: &System<'_>) -> bool {
 }
 
 /// Largest entry of each multiplier's column, once no multiplier acts on other nodes with multipliers.
-fn columns_of_multipliers(system: &System<'_>, places: &Places, tolerance: f64) -> Result<Vec<f64>, NotCondensable> {
+fn columns_of_multipliers(
+    system: &System<'_>,
+    places: &EquationPlaces,
+    tolerance: f64,
+) -> Result<Vec<f64>, NotCondensable> {
     let n = system.equations();
     let mut largest = vec![0.0_f64; n];
     let mut own = vec![0.0_f64; n];
@@ -331,12 +335,12 @@ fn columns_of_multipliers(system: &System<'_>, places: &Places, tolerance: f64) 
 
 fn eliminate(
     system: &System<'_>,
-    places: &Places,
+    places: &EquationPlaces,
     largest: &[f64],
     zero_row: f64,
     equations: Vec<u32>,
     row: &mut SparseRow,
-) -> Result<Group, NotCondensable> {
+) -> Result<NodeGroup, NotCondensable> {
     let own = equations.iter().filter(|&&e| !system.layout.multiplier[e as usize]).count();
     let (s, m) = (equations.len(), equations.len() - own);
     let (mut g, mut h) = (vec![0.0; s * m], vec![0.0; s * own]);
@@ -366,5 +370,5 @@ fn eliminate(
             row.take()
         })
         .collect();
-    Ok(Group { equations, own, elimination, recovery })
+    Ok(NodeGroup { equations, own, elimination, recovery })
 }

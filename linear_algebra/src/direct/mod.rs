@@ -4,8 +4,8 @@
 //! `S = K_BB - K_BI K_II⁻¹ K_IB`, and kept while its stamp is unchanged; a changed coupling `C` costs one dense LU of
 //! `S + C`. Bodies that only contact holds need no care, as `K_II` is regular when B is held.
 
-mod answers;
-mod path;
+mod solution_checks;
+mod factorized_system;
 
 use std::borrow::Cow;
 use std::time::Instant;
@@ -18,12 +18,12 @@ use crate::lu::SparseLu;
 use crate::memory;
 use crate::multifrontal::Precision;
 use crate::solver::{DirectSettings, LinearSolver, SolveError, SolveReport};
-use crate::state::{Carrier, State, WrongState};
+use crate::state::{State, StateMapper, WrongState};
 use crate::stored_as_bytes;
 use crate::system::{Stamps, Symmetry, System};
 use crate::vector;
-use answers::{is_regular, krylov, largest_entries, null_vector};
-use path::{Path, Sparse};
+use factorized_system::{FactorizedSystem, Sparse};
+use solution_checks::{is_regular, krylov, largest_entries, null_vector};
 
 /// Interfaces up to this size are always worth their dense block.
 const SMALL_INTERFACE: usize = 1500;
@@ -48,7 +48,7 @@ const NULL_VECTOR: f64 = 1e-10;
 
 /// The ways, from the preferred one to the last resort.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-enum Way {
+enum FactorizationMethod {
     Dense,
     InterfaceCholesky,
     InterfaceLu,
@@ -57,7 +57,7 @@ enum Way {
     SparseLu,
 }
 
-impl Way {
+impl FactorizationMethod {
     fn name(self) -> &'static str {
         match self {
             Self::Dense => "dense_lu",
@@ -73,8 +73,8 @@ impl Way {
 /// The engine [`crate::Engine::Direct`].
 pub(crate) struct DirectSolver {
     settings: DirectSettings,
-    current: Option<(Way, Path, Stamps)>,
-    learnt: DirectState,
+    current: Option<(FactorizationMethod, FactorizedSystem, Stamps)>,
+    history: DirectState,
     /// Multiplications of a factorisation of the whole matrix with these graphs.
     whole_work: Option<((u64, u64), f64)>,
     seconds_symbolic: f64,
@@ -86,7 +86,7 @@ pub(crate) struct DirectSolver {
 #[serde(remote = "Self")]
 struct DirectState {
     /// The way of the last answer, with the stamps of its system.
-    served: Option<(Way, Stamps)>,
+    served: Option<(FactorizationMethod, Stamps)>,
     /// Equations kept in the interface, with the stamp of the bulk's graph they belong to.
     kept: Option<(Vec<bool>, u64)>,
     cholesky_pause: usize,
@@ -99,7 +99,7 @@ stored_as_bytes!(DirectState);
 #[typetag::serde(name = "direct")]
 impl State for DirectState {
     /// All of it is of the equations of a rank.
-    fn carry(&mut self, _carrier: &mut dyn Carrier) {
+    fn remap(&mut self, _mapper: &mut dyn StateMapper) {
         *self = Self::default();
     }
 }
@@ -109,7 +109,7 @@ impl DirectSolver {
         Self {
             settings,
             current: None,
-            learnt: DirectState::default(),
+            history: DirectState::default(),
             whole_work: None,
             seconds_symbolic: 0.0,
             seconds_numeric: 0.0,
@@ -117,24 +117,24 @@ impl DirectSolver {
     }
 
     /// Ways to try, best first.
-    fn ways(&mut self, system: &System<'_>) -> Result<Vec<Way>, SolveError> {
+    fn ways(&mut self, system: &System<'_>) -> Result<Vec<FactorizationMethod>, SolveError> {
         let n = system.equations();
-        // The dense matrix and the last resort know nothing of equations that are held.
-        let is_whole = system.layout.held.is_empty();
+        // The dense matrix and the last resort know nothing of inactive equations.
+        let is_whole = system.layout.inactive.is_empty();
         if is_whole && n <= self.settings.dense_below {
-            return Ok(vec![Way::Dense]);
+            return Ok(vec![FactorizationMethod::Dense]);
         }
         let mut ways = Vec::new();
-        let cholesky = system.bulk_symmetry != Symmetry::General && self.learnt.cholesky_pause == 0;
+        let cholesky = system.bulk_symmetry != Symmetry::General && self.history.cholesky_pause == 0;
         let kept = self.interface(system);
         if kept == 0 {
-            ways.extend(cholesky.then_some(Way::WholeCholesky));
+            ways.extend(cholesky.then_some(FactorizationMethod::WholeCholesky));
         } else if kept <= self.settings.interface_limit && !self.is_too_dense(kept, system)? {
-            ways.extend(cholesky.then_some(Way::InterfaceCholesky));
-            ways.push(Way::InterfaceLu);
+            ways.extend(cholesky.then_some(FactorizationMethod::InterfaceCholesky));
+            ways.push(FactorizationMethod::InterfaceLu);
         }
-        ways.push(Way::WholeLu);
-        ways.extend((is_whole && n <= SPARSE_LU_LIMIT).then_some(Way::SparseLu));
+        ways.push(FactorizationMethod::WholeLu);
+        ways.extend((is_whole && n <= SPARSE_LU_LIMIT).then_some(FactorizationMethod::SparseLu));
         Ok(ways)
     }
 
@@ -143,10 +143,10 @@ impl DirectSolver {
     /// The interface of the previous solve is kept while it covers the new one and is not much larger, since a new one
     /// means a new factorisation of the bulk; a moving interface grows for the same reason.
     fn interface(&mut self, system: &System<'_>) -> usize {
-        let wanted = path::interface_equations(system);
+        let wanted = factorized_system::interface_equations(system);
         let count = |kept: &[bool]| kept.iter().filter(|&&kept| kept).count();
         let needed = count(&wanted);
-        if let Some((old, graph)) = &mut self.learnt.kept
+        if let Some((old, graph)) = &mut self.history.kept
             && *graph == system.bulk_graph
             && old.len() == wanted.len()
         {
@@ -159,35 +159,39 @@ impl DirectSolver {
                 return size;
             }
         }
-        self.learnt.kept = Some((wanted, system.bulk_graph));
+        self.history.kept = Some((wanted, system.bulk_graph));
         needed
     }
 
     /// Makes `way` ready for `system`, with the reuse that the stamps allow; `None` when the matrix does not suit the way.
-    fn prepare(&mut self, way: Way, system: &System<'_>) -> Result<Option<Path>, SolveError> {
+    fn prepare(
+        &mut self,
+        way: FactorizationMethod,
+        system: &System<'_>,
+    ) -> Result<Option<FactorizedSystem>, SolveError> {
         let stamps = Stamps::of(system);
         let (old, old_stamps) = match self.current.take() {
             Some((old_way, path, old_stamps)) if old_way == way => (Some(path), Some(old_stamps)),
             _ => (None, None),
         };
-        if old_stamps == Some(stamps) && !old.as_ref().is_some_and(Path::is_lost) {
+        if old_stamps == Some(stamps) && !old.as_ref().is_some_and(FactorizedSystem::is_lost) {
             return Ok(old);
         }
         let same_bulk_graph = old_stamps.is_some_and(|old| old.bulk_graph == stamps.bulk_graph);
         let same_bulk = same_bulk_graph && old_stamps.is_some_and(|old| old.bulk_values == stamps.bulk_values);
         let start = Instant::now();
         match way {
-            Way::Dense => {
-                let path = path::dense(system);
+            FactorizationMethod::Dense => {
+                let path = factorized_system::dense(system);
                 self.seconds_numeric += start.elapsed().as_secs_f64();
                 Ok(Some(path))
             }
-            Way::SparseLu => {
-                let path = Path::SparseLu(SparseLu::new(&system.merged())?);
+            FactorizationMethod::SparseLu => {
+                let path = FactorizedSystem::SparseLu(SparseLu::new(&system.merged())?);
                 self.seconds_numeric += start.elapsed().as_secs_f64();
                 Ok(Some(path))
             }
-            Way::WholeCholesky | Way::WholeLu => {
+            FactorizationMethod::WholeCholesky | FactorizationMethod::WholeLu => {
                 let same_graph = same_bulk_graph
                     && old_stamps.is_some_and(|old| {
                         old.is_coupled == stamps.is_coupled && old.coupling_graph == stamps.coupling_graph
@@ -195,20 +199,22 @@ impl DirectSolver {
                 let merged = system.active_coupling().map(|_| system.merged());
                 let matrix = merged.as_ref().unwrap_or(system.bulk);
                 let mut sparse = match old {
-                    Some(Path::Whole(sparse)) if same_graph => sparse,
+                    Some(FactorizedSystem::Whole(sparse)) if same_graph => sparse,
                     _ => Sparse::new(matrix, system, &vec![false; system.equations()])?,
                 };
                 self.seconds_symbolic += start.elapsed().as_secs_f64();
                 let start = Instant::now();
                 let precision = self.precision(&sparse);
-                let done = sparse.factorise(matrix, way == Way::WholeCholesky, precision);
+                let done = sparse.factorise(matrix, way == FactorizationMethod::WholeCholesky, precision);
                 self.seconds_numeric += start.elapsed().as_secs_f64();
-                Ok(done.ok().map(|()| Path::Whole(sparse)))
+                Ok(done.ok().map(|()| FactorizedSystem::Whole(sparse)))
             }
-            Way::InterfaceCholesky | Way::InterfaceLu => {
-                let (kept, _) = self.learnt.kept.as_ref().expect("decided in `interface`");
+            FactorizationMethod::InterfaceCholesky | FactorizationMethod::InterfaceLu => {
+                let (kept, _) = self.history.kept.as_ref().expect("decided in `interface`");
                 let (mut sparse, mut old_interface) = match old {
-                    Some(Path::Interface(sparse, interface)) if same_bulk_graph && covers(&sparse, kept) => {
+                    Some(FactorizedSystem::Interface(sparse, interface))
+                        if same_bulk_graph && covers(&sparse, kept) =>
+                    {
                         (sparse, Some(interface))
                     }
                     _ => (Sparse::new(system.bulk, system, kept)?, None),
@@ -218,7 +224,8 @@ impl DirectSolver {
                 if !(same_bulk && sparse.factor.is_some()) {
                     old_interface.iter_mut().for_each(Interface::forget);
                     let precision = self.precision(&sparse);
-                    if sparse.factorise(system.bulk, way == Way::InterfaceCholesky, precision).is_err() {
+                    if sparse.factorise(system.bulk, way == FactorizationMethod::InterfaceCholesky, precision).is_err()
+                    {
                         self.seconds_numeric += start.elapsed().as_secs_f64();
                         return Ok(None);
                     }
@@ -229,19 +236,19 @@ impl DirectSolver {
                 let local = |equation| symbolic.position_of(equation).map(|position| position - interior);
                 let interface = Interface::new(
                     &sparse.factor.as_ref().expect("factorised").root,
-                    path::local_coupling(system, equations, local),
+                    factorized_system::local_coupling(system, equations, local),
                     |at| system.bulk.row(equations[at] as usize).1.iter().any(|&value| value != 0.0),
                     old_interface,
                 );
                 self.seconds_numeric += start.elapsed().as_secs_f64();
-                Ok(Some(Path::Interface(sparse, interface)))
+                Ok(Some(FactorizedSystem::Interface(sparse, interface)))
             }
         }
     }
 
     /// In which precision factors are kept.
     fn precision(&self, sparse: &Sparse) -> Precision {
-        if !self.learnt.needs_double && sparse.symbolic.factor_size() >= self.settings.single_from {
+        if !self.history.needs_double && sparse.symbolic.factor_size() >= self.settings.single_from {
             Precision::Single
         } else {
             Precision::Double
@@ -273,7 +280,7 @@ impl DirectSolver {
     /// Solves by one way; `None` when another one should be tried.
     fn attempt(
         &mut self,
-        way: Way,
+        way: FactorizationMethod,
         system: &System<'_>,
         rhs: &[f64],
         x: &mut [f64],
@@ -322,14 +329,14 @@ impl DirectSolver {
     /// Solves by the way of `single`, whose factors in single precision do not serve, with factors in double precision.
     fn in_double(
         &mut self,
-        way: Way,
-        single: Path,
+        way: FactorizationMethod,
+        single: FactorizedSystem,
         system: &System<'_>,
         rhs: &[f64],
         x: &mut [f64],
     ) -> Result<Option<Refined>, SolveError> {
         drop(single);
-        self.learnt.needs_double = true;
+        self.history.needs_double = true;
         let needed = memory::factor(system.equations(), system.bulk.entries(), usize::MAX);
         if let Some(free) = memory::available().filter(|free| *free < needed) {
             return Err(SolveError::Failed(format!(
@@ -362,7 +369,7 @@ impl LinearSolver for DirectSolver {
     }
 
     /// Where a second copy of the matrix would weigh, and all ways do.
-    fn takes_held(&self, equations: usize, _: usize) -> bool {
+    fn takes_inactive_rows(&self, equations: usize, _: usize) -> bool {
         equations > SPARSE_LU_LIMIT.max(self.settings.dense_below)
     }
 
@@ -372,17 +379,17 @@ impl LinearSolver for DirectSolver {
 
     /// Factors of an interface whose coupling has changed since would be iterated with.
     fn forget(&mut self) {
-        if let Some((_, Path::Interface(_, interface), _)) = &mut self.current {
+        if let Some((_, FactorizedSystem::Interface(_, interface), _)) = &mut self.current {
             interface.forget();
         }
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
-        Some(Box::new(self.learnt.clone()))
+        Some(Box::new(self.history.clone()))
     }
 
     fn resume(&mut self, state: Box<dyn State>) -> Result<(), WrongState> {
-        self.learnt = state.take()?;
+        self.history = state.take()?;
         Ok(())
     }
 
@@ -390,8 +397,8 @@ impl LinearSolver for DirectSolver {
         check::input(system, rhs, x)?;
         check::empty_rows(system)?;
         let mut free = Cow::Borrowed(rhs);
-        if !system.layout.held.is_empty() {
-            system.clear_held(free.to_mut());
+        if !system.layout.inactive.is_empty() {
+            system.clear_inactive(free.to_mut());
         }
         let rhs = &*free;
         (self.seconds_symbolic, self.seconds_numeric) = (0.0, 0.0);
@@ -399,7 +406,7 @@ impl LinearSolver for DirectSolver {
         let mut failed: Vec<&'static str> = Vec::new();
         let mut ways = self.ways(system)?;
         // A way that served the same bulk before is tried first, so that a failing one is not tried at each solve.
-        if let Some((way, stamps)) = self.learnt.served.take()
+        if let Some((way, stamps)) = self.history.served.take()
             && stamps.bulk_graph == system.bulk_graph
             && stamps.bulk_values == system.bulk_values
             && let Some(at) = ways.iter().position(|candidate| *candidate == way)
@@ -408,14 +415,14 @@ impl LinearSolver for DirectSolver {
         }
         for way in ways {
             let Some(refined) = self.attempt(way, system, rhs, x)? else {
-                if matches!(way, Way::WholeCholesky | Way::InterfaceCholesky) {
-                    self.learnt.cholesky_pause = CHOLESKY_PAUSE + 1;
+                if matches!(way, FactorizationMethod::WholeCholesky | FactorizationMethod::InterfaceCholesky) {
+                    self.history.cholesky_pause = CHOLESKY_PAUSE + 1;
                 }
                 failed.push(way.name());
                 continue;
             };
-            self.learnt.served = Some((way, Stamps::of(system)));
-            self.learnt.cholesky_pause = self.learnt.cholesky_pause.saturating_sub(1);
+            self.history.served = Some((way, Stamps::of(system)));
+            self.history.cholesky_pause = self.history.cholesky_pause.saturating_sub(1);
             let before_solve = self.seconds_symbolic + self.seconds_numeric;
             return Ok(SolveReport {
                 engine: way.name(),

@@ -3,7 +3,7 @@
 
 use super::Progress;
 use crate::ghosts::Ghosts;
-use crate::vector::{Number, add_scaled, clear, copy, scale_by, scale_to, set_length, subtract_combination};
+use crate::vector::{Scalar, add_scaled, clear, copy, scale_by, scale_to, set_length, subtract_combination};
 
 /// The method, with vectors that serve solve after solve.
 #[derive(Default)]
@@ -14,7 +14,7 @@ pub(crate) struct Gmres<T> {
 }
 
 /// The vector of a list at a place, of `n` entries.
-fn at<T: Number>(list: &mut Vec<Vec<T>>, place: usize, n: usize) -> &mut Vec<T> {
+fn at<T: Scalar>(list: &mut Vec<Vec<T>>, place: usize, n: usize) -> &mut Vec<T> {
     if list.len() == place {
         list.push(Vec::new());
     }
@@ -28,7 +28,7 @@ struct Cycle {
     iterations: usize,
 }
 
-impl<T: Number> Gmres<T> {
+impl<T: Scalar> Gmres<T> {
     /// Improves `x` until `‖b - A x‖ ≤ tolerance ‖b‖` or `most` iterations are done.
     ///
     /// `known` is `b - A x` at the start, where that is known; `ghosts` says who has which entries; `multiply(x, y)` is `y = A x`, `precondition(x, left)` replaces `x` by an approximation of
@@ -90,7 +90,7 @@ impl<T: Number> Gmres<T> {
         }
     }
 
-    /// Replaces `b` by an approximation of `A⁻¹ b` that leaves no more than the share `aim` of it; gives the iterations, at most `most`.
+    /// Replaces `b` by an approximation of `A⁻¹ b` that leaves no more than the share `forcing_term` of it; gives the iterations, at most `most`.
     ///
     /// The residual is not computed: the iteration tells it within a factor of two, which is good enough for a preconditioner.
     pub(crate) fn approximate(
@@ -100,7 +100,7 @@ impl<T: Number> Gmres<T> {
         precondition: impl FnMut(&mut [T], f64),
         b: &mut [T],
         most: usize,
-        aim: f64,
+        forcing_term: f64,
     ) -> usize {
         let size = ghosts.norm(b);
         if size == 0.0 || !size.is_finite() || most == 0 {
@@ -108,7 +108,7 @@ impl<T: Number> Gmres<T> {
             return 0;
         }
         copy(b, at(&mut self.basis, 0, b.len()));
-        let cycle = self.cycle(ghosts, multiply, precondition, size, most, 0.5 * aim * size);
+        let cycle = self.cycle(ghosts, multiply, precondition, size, most, 0.5 * forcing_term * size);
         clear(b);
         subtract_combination(&self.directions[..cycle.coefficients.len()], &cycle.coefficients, b);
         cycle.iterations

@@ -1,12 +1,12 @@
 //! Iterations on any product with a matrix: conjugate gradients, restarted GMRES, and where to begin them.
 
-mod answers;
+mod previous_solutions;
 mod conjugate_gradient;
 mod gmres;
 
-pub(crate) use answers::{Answer, Answers};
 pub(crate) use conjugate_gradient::conjugate_gradient;
 pub(crate) use gmres::Gmres;
+pub(crate) use previous_solutions::{PreviousSolution, PreviousSolutions};
 
 /// How far an iteration came.
 #[derive(Debug, Clone, Copy)]

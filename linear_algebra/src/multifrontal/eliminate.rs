@@ -1,9 +1,9 @@
 //! Elimination over the tree: every front adds up the updates of its children in their order.
 
-use super::pool::Pool;
+use super::pool::BufferPool;
 use super::scatter::Scatter;
-use super::store::Block;
-use super::{Kind, NotPositiveDefinite, Scaling};
+use super::store::FactorBlock;
+use super::{Factorization, NotPositiveDefinite, Scaling};
 use crate::dense::{self, PARALLEL_WORK, view, view_mut};
 use crate::dense_lu::{self, Pivots};
 use crate::parallel;
@@ -19,15 +19,15 @@ pub(super) struct Elimination<'a> {
     pub(super) scatter: &'a Scatter,
     pub(super) values: &'a [f64],
     pub(super) scaling: &'a Scaling,
-    pub(super) kind: Kind,
-    pub(super) pool: Pool,
+    pub(super) kind: Factorization,
+    pub(super) pool: BufferPool,
 }
 
 impl Elimination<'_> {
     /// Updates of the consecutive subtrees `tops`, whose blocks start with front `begin`.
     pub(super) fn subtrees(
         &self,
-        blocks: &mut [Block<'_>],
+        blocks: &mut [FactorBlock<'_>],
         begin: usize,
         tops: &[usize],
     ) -> Result<Vec<Square>, NotPositiveDefinite> {
@@ -49,12 +49,12 @@ impl Elimination<'_> {
     }
 
     /// Eliminates a subtree and gives its update of the rows of its top.
-    fn eliminate(&self, blocks: &mut [Block<'_>], top: usize) -> Result<Square, NotPositiveDefinite> {
+    fn eliminate(&self, blocks: &mut [FactorBlock<'_>], top: usize) -> Result<Square, NotPositiveDefinite> {
         let front = &self.symbolic.fronts[top];
         let (own, inner) = blocks.split_last_mut().expect("a subtree has a top");
         let mut updates = self.subtrees(inner, front.first, &front.children)?;
         let (pivots, order, rows) = (front.pivots(), front.order(), front.rows.len());
-        let symmetric = self.kind == Kind::Cholesky;
+        let symmetric = self.kind == Factorization::Cholesky;
         let (mut panel_memory, mut right_memory) =
             (self.pool.take(order * pivots), self.pool.take(if symmetric { 0 } else { pivots * rows }));
         let panel = &mut panel_memory[..order * pivots];
@@ -80,10 +80,10 @@ impl Elimination<'_> {
             update.forget_before(below.map_or(update.order(), |run| run.child));
         }
         match self.kind {
-            Kind::Cholesky => {
+            Factorization::Cholesky => {
                 dense::cholesky_panel(panel, order, pivots).map_err(|_| NotPositiveDefinite)?;
             }
-            Kind::Lu { limit } => {
+            Factorization::Lu { limit } => {
                 *own.pivots = factorise_front(panel, right, order, pivots, limit);
                 own.upper.keep_rows(order, pivots, |k| match k.checked_sub(pivots) {
                     None => &panel[k * order..k * order + pivots],
@@ -119,7 +119,7 @@ impl Elimination<'_> {
     /// The Schur complement on the equations kept last; `values` is memory to use again.
     pub(super) fn root(&self, root: usize, tops: &[usize], updates: &[Square], mut values: Vec<f64>) -> Square {
         let order = self.symbolic.fronts[root].order();
-        let symmetric = self.kind == Kind::Cholesky;
+        let symmetric = self.kind == Factorization::Cholesky;
         values.clear();
         values.resize(Square::size(order, symmetric), 0.0);
         let mut schur = Square::over(values, order, symmetric);
@@ -141,7 +141,7 @@ impl Elimination<'_> {
         let equations: Vec<usize> = positions.map(|position| self.symbolic.equation[position] as usize).collect();
         let [rows, columns] = [&self.scaling.row, &self.scaling.column]
             .map(|factors| equations.iter().map(|&i| factors[i]).collect::<Vec<f64>>());
-        for entry in self.scatter.of(at, self.kind == Kind::Cholesky) {
+        for entry in self.scatter.of(at, self.kind == Factorization::Cholesky) {
             let target = entry.target as usize;
             let (row, column) = match target.checked_sub(order * pivots) {
                 None => (target % order, target / order),

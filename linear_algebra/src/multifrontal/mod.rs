@@ -14,14 +14,14 @@ use crate::csr::Csr;
 use crate::square::Square;
 use crate::symbolic::Symbolic;
 use eliminate::Elimination;
-use pool::Pool;
+use pool::BufferPool;
 pub(crate) use scatter::Scatter;
 pub(crate) use store::Precision;
 use store::Store;
 
 /// Kind of factorisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Kind {
+pub(crate) enum Factorization {
     /// `L Lᵀ` of a symmetric positive definite matrix.
     Cholesky,
     /// `L U`, rows exchanged within fronts; pivots below `limit` are replaced by it.
@@ -56,7 +56,7 @@ impl Scaling {
 #[derive(Debug)]
 pub(crate) struct Factor {
     symbolic: Arc<Symbolic>,
-    kind: Kind,
+    kind: Factorization,
     store: Store,
     scaling: Scaling,
     /// Schur complement on the equations kept last; not scaled.
@@ -81,15 +81,21 @@ impl Factor {
         symbolic: &Arc<Symbolic>,
         scatter: &Scatter,
         matrix: &Csr,
-        kind: Kind,
+        kind: Factorization,
         precision: Precision,
         scaling: Scaling,
         reuse: Option<Factor>,
     ) -> Result<Self, NotPositiveDefinite> {
         let (mut store, memory) = reuse.map_or_else(Default::default, |old| (old.store, old.root.into_values()));
-        store.reserve(symbolic, kind == Kind::Cholesky, precision);
-        let work =
-            Elimination { symbolic, scatter, values: &matrix.values, scaling: &scaling, kind, pool: Pool::default() };
+        store.reserve(symbolic, kind == Factorization::Cholesky, precision);
+        let work = Elimination {
+            symbolic,
+            scatter,
+            values: &matrix.values,
+            scaling: &scaling,
+            kind,
+            pool: BufferPool::default(),
+        };
         let (tops, root) = symbolic.tops();
         let updates = work.subtrees(&mut store.blocks(), 0, &tops)?;
         work.pool.clear();
@@ -124,8 +130,10 @@ impl Factor {
         for (at, pivots) in self.store.pivots.iter().enumerate() {
             let equations = &self.symbolic.equation[self.symbolic.fronts[at].columns.clone()];
             match self.kind {
-                Kind::Lu { .. } => found.extend(pivots.replaced.iter().map(|&k| equations[k as usize] as usize)),
-                Kind::Cholesky => {
+                Factorization::Lu { .. } => {
+                    found.extend(pivots.replaced.iter().map(|&k| equations[k as usize] as usize))
+                }
+                Factorization::Cholesky => {
                     for (pivot, &i) in self.store.diagonal(at).into_iter().zip(equations) {
                         let i = i as usize;
                         let diagonal = matrix.get(i, i) * self.scaling.row[i] * self.scaling.column[i];

@@ -11,11 +11,11 @@ const WAITING: usize = 1 << 23;
 
 /// Buffers waiting for their next use, shortest first.
 #[derive(Debug, Default)]
-pub(crate) struct Pool {
+pub(crate) struct BufferPool {
     free: Mutex<Vec<Vec<f64>>>,
 }
 
-impl Pool {
+impl BufferPool {
     /// A buffer of at least `len` numbers of any value.
     ///
     /// Where no waiting buffer is suitable, as many numbers as are asked for go back to the system before, so that waiting buffers
@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn a_buffer_serves_again_only_what_it_can_hold() {
-        let pool = Pool::default();
+        let pool = BufferPool::default();
         let first = pool.take(10_000);
         let address = first.as_ptr();
         pool.give(first);

@@ -88,7 +88,7 @@ impl Slot<'_> {
 }
 
 /// Where the factors of one front go.
-pub(super) struct Block<'a> {
+pub(super) struct FactorBlock<'a> {
     pub(super) lower: Slot<'a>,
     pub(super) upper: Slot<'a>,
     pub(super) pivots: &'a mut Pivots,
@@ -128,11 +128,11 @@ impl Store {
         }
     }
 
-    pub(super) fn blocks(&mut self) -> Vec<Block<'_>> {
+    pub(super) fn blocks(&mut self) -> Vec<FactorBlock<'_>> {
         let lower = self.lower.slots(&self.starts);
         let upper = self.upper.slots(&self.starts);
         let slots = lower.into_iter().zip(upper).zip(&mut self.pivots);
-        slots.map(|((lower, upper), pivots)| Block { lower, upper, pivots }).collect()
+        slots.map(|((lower, upper), pivots)| FactorBlock { lower, upper, pivots }).collect()
     }
 
     /// The diagonal of the lower factor of a front.

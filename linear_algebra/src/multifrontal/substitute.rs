@@ -1,9 +1,9 @@
 //! Forward and backward substitution over the tree, in parallel over its subtrees.
 
-use super::{Factor, Kind};
+use super::{Factor, Factorization};
 use crate::dense;
 use crate::parallel;
-use crate::symbolic::{Front, Run};
+use crate::symbolic::{Front, RowRun};
 
 /// Operations of the elimination of a subtree below which one task substitutes in all of it.
 const TASK_WORK: f64 = 2e7;
@@ -98,7 +98,7 @@ impl Factor {
         let mut local = Vec::with_capacity(front.order());
         local.extend_from_slice(own);
         local.extend_from_slice(known);
-        self.store.backward(top, self.kind == Kind::Cholesky, &mut local);
+        self.store.backward(top, self.kind == Factorization::Cholesky, &mut local);
         own.copy_from_slice(&local[..front.pivots()]);
         let begin = front.columns.start - inner.len();
         let known = front.children.iter().map(|&c| gather_runs(&self.symbolic.fronts[c], &local)).collect();
@@ -106,7 +106,7 @@ impl Factor {
     }
 }
 
-fn add_runs(runs: &[Run], update: &[f64], target: &mut [f64]) {
+fn add_runs(runs: &[RowRun], update: &[f64], target: &mut [f64]) {
     for run in runs {
         let target = &mut target[run.parent..run.parent + run.len];
         target.iter_mut().zip(&update[run.child..run.child + run.len]).for_each(|(t, u)| *t += u);

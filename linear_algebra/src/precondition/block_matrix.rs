@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use super::block_row::BlockRow;
 use super::product_row::ProductRow;
 #[cfg(target_arch = "x86_64")]
-use super::row_product::Avx2;
-use super::row_product::{Lanes, Plain, TAIL, row_product};
+use super::row_product::Avx2Lanes;
+use super::row_product::{Lanes, PortableLanes, TAIL, row_product};
 use super::workspaces::Workspaces;
 use crate::csr::Csr;
 use crate::parallel;
@@ -451,13 +451,13 @@ impl Part {
             // SAFETY: the processor has just said that it knows AVX2.
             return unsafe { self.products_by_avx2::<H, W>(x, sums) };
         }
-        self.products_in::<H, W, Plain>(x, sums);
+        self.products_in::<H, W, PortableLanes>(x, sums);
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
     fn products_by_avx2<const H: usize, const W: usize>(&self, x: &[f32], sums: &mut [[f32; H]]) {
-        self.products_in::<H, W, Avx2>(x, sums);
+        self.products_in::<H, W, Avx2Lanes>(x, sums);
     }
 
     #[inline(always)]

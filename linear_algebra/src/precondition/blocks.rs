@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::block_matrix::{BlockMatrix, Into};
-use super::multigrid::Multigrid;
+use super::multigrid_hierarchy::Multigrid;
 use super::single_precision::in_single;
 use crate::ghosts::Ghosts;
 use crate::iterations::Gmres;
@@ -25,14 +25,14 @@ pub(crate) struct Blocks {
 }
 
 impl Blocks {
-    /// Replaces `b`, own entries, by an approximate solution that leaves the share `aim` of `b`; gives the iterations, at most `most`.
+    /// Replaces `b`, own entries, by an approximate solution that leaves the share `forcing_term` of `b`; gives the iterations, at most `most`.
     /// Collective.
     pub(crate) fn solve(
         &self,
         levels: &Multigrid,
         method: &mut Gmres<f32>,
         b: &mut [f64],
-        aim: f64,
+        forcing_term: f64,
         most: usize,
     ) -> usize {
         let mut all = Vec::new();
@@ -49,7 +49,7 @@ impl Blocks {
         let precondition = |r: &mut [f32], _: f64| levels.apply(r);
         let mut iterations = 0;
         in_single(&self.ghosts, b, self.size, |rhs| {
-            iterations = method.approximate(&self.ghosts, multiply, precondition, rhs, most.min(MOST), aim);
+            iterations = method.approximate(&self.ghosts, multiply, precondition, rhs, most.min(MOST), forcing_term);
         });
         iterations
     }

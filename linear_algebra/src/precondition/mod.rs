@@ -5,21 +5,21 @@ mod block_jacobi;
 mod block_row;
 mod multiplier;
 mod row_product;
-mod sums;
+mod sparse_sums;
 mod product_row;
 mod block_matrix;
 mod blocks;
 mod constrained;
 mod ilu0;
-mod latest_blocks;
-mod multigrid;
+mod reduced_system_cache;
+mod multigrid_hierarchy;
 mod shared_levels;
 mod single_precision;
 mod workspaces;
 
 pub(crate) use constrained::Constrained;
-pub(crate) use latest_blocks::LatestBlocks;
-pub(crate) use multigrid::Multigrid;
+pub(crate) use multigrid_hierarchy::Multigrid;
+pub(crate) use reduced_system_cache::ReducedSystemCache;
 
 pub(crate) use crate::solver::Precondition;
 

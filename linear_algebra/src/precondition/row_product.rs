@@ -36,9 +36,9 @@ pub(super) trait Lanes: Copy {
 
 /// For any processor.
 #[derive(Clone, Copy)]
-pub(super) struct Plain([f32; 8]);
+pub(super) struct PortableLanes([f32; 8]);
 
-impl Lanes for Plain {
+impl Lanes for PortableLanes {
     #[inline(always)]
     fn zero() -> Self {
         Self([0.0; 8])
@@ -59,10 +59,10 @@ impl Lanes for Plain {
 /// Made only where the processor knows AVX2.
 #[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy)]
-pub(super) struct Avx2(std::arch::x86_64::__m256);
+pub(super) struct Avx2Lanes(std::arch::x86_64::__m256);
 
 #[cfg(target_arch = "x86_64")]
-impl Lanes for Avx2 {
+impl Lanes for Avx2Lanes {
     #[inline(always)]
     fn zero() -> Self {
         // SAFETY: see the type.
@@ -181,7 +181,7 @@ mod tests {
     fn check<const H: usize, const W: usize, L: Lanes>(blocks: usize) {
         let (columns, values, x) = row(blocks, H * W, W);
         let found = row_product::<H, W, L>(&columns, &values, &x);
-        assert_eq!(found, row_product::<H, W, Plain>(&columns, &values, &x), "{blocks} blocks of {H} by {W}");
+        assert_eq!(found, row_product::<H, W, PortableLanes>(&columns, &values, &x), "{blocks} blocks of {H} by {W}");
         for (h, found) in found.into_iter().enumerate() {
             let entry = |at: usize, w: usize| f64::from(values[at * H * W + w * H + h]);
             let terms = columns.iter().enumerate().flat_map(|(at, &j)| (0..W).map(move |w| (at, j as usize, w)));
@@ -206,10 +206,10 @@ mod tests {
 
     #[test]
     fn every_processor_gives_the_same_bits() {
-        check_all::<Plain>();
+        check_all::<PortableLanes>();
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
-            check_all::<Avx2>();
+            check_all::<Avx2Lanes>();
         }
     }
 }

@@ -4,12 +4,12 @@
 //! and loads are kept for a starter deck. Source: CalculiX CrunchiX user's manual, "Input deck format".
 
 mod cards;
-mod cells;
+mod abaqus_cells;
 mod instance;
 mod model;
 mod steps;
 mod surfaces;
-mod write;
+mod abaqus_writer;
 
 use std::path::Path;
 
@@ -44,5 +44,5 @@ register! { MeshFormatEntry "abaqus",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/mesh_formats/abaqus.json")),
     build: build,
     endings: &["inp"],
-    write: Some(write::write),
+    write: Some(abaqus_writer::write),
 }

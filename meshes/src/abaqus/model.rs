@@ -6,8 +6,8 @@ use std::path::Path;
 use rustc_hash::FxHashMap;
 use zelus_core::diagnostics::{Diagnostic, Place, Report, Result};
 
+use super::abaqus_cells;
 use super::cards::Card;
-use super::cells;
 use super::instance::Placement;
 use super::steps::Interactions;
 use super::surfaces::Surface;
@@ -172,17 +172,17 @@ impl Model {
 
     fn add_elements(&mut self, card: &Card, scope: &str) -> Result<()> {
         let kind = card.require("TYPE")?;
-        let Some((shape, plane)) = cells::of(kind) else {
+        let Some((shape, plane)) = abaqus_cells::of(kind) else {
             let known = "C3D4, C3D6, C3D8, C3D10, C3D15, C3D20, CPS…, CPE… and CAX… are known, whatever letters follow";
             return Err(Diagnostic::error("mesh-syntax", format!("elements of type {kind} are not known"))
                 .at(card.place())
                 .remedy(known)
                 .into());
         };
-        if cells::is_structural(kind) {
+        if abaqus_cells::is_structural(kind) {
             *self.structural.entry(kind.to_ascii_uppercase()).or_default() += 1;
         }
-        if let Some(left_out) = cells::left_out(kind, shape) {
+        if let Some(left_out) = abaqus_cells::left_out(kind, shape) {
             self.simpler.insert(kind.to_ascii_uppercase(), left_out);
         }
         self.mesh.plane = self.mesh.plane.or(plane);
@@ -194,7 +194,7 @@ impl Model {
                 return Err(card.wrong(format!("element {label} has too few nodes for {kind}")));
             }
             let mut nodes = vec![0; shape.nodes()];
-            for (&place, field) in cells::order(shape).iter().zip(&row[1..]) {
+            for (&place, field) in abaqus_cells::order(shape).iter().zip(&row[1..]) {
                 let node = (scope.to_owned(), card.label(field)?);
                 let found = self.nodes.get(&node);
                 nodes[place] = *found

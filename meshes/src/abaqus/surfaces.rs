@@ -3,8 +3,8 @@
 use rustc_hash::FxHashSet;
 use zelus_core::diagnostics::Result;
 
+use super::abaqus_cells;
 use super::cards::Card;
-use super::cells;
 use super::model::{Model, group_name};
 use crate::faces::{Face, FaceCells, face_nodes, faces};
 
@@ -73,7 +73,7 @@ impl Model {
     pub(super) fn face_of(&self, card: &Card, element: u32, name: &str) -> Result<usize> {
         let shape = self.mesh.cells.shapes[element as usize];
         let number = name.trim_start_matches(['S', 's', 'P', 'p', 'E', 'e']).parse().ok();
-        number.and_then(|number| cells::face(shape, number)).ok_or_else(|| {
+        number.and_then(|number| abaqus_cells::face(shape, number)).ok_or_else(|| {
             let id = self.mesh.cells.ids[element as usize];
             card.wrong(format!("*{}: element {id} has no face {name:?}", card.keyword))
         })

@@ -3,9 +3,9 @@
 //! Physical groups become sub model parts, by their names; without any, the entities of the geometry do. Source: Gmsh's reference
 //! manual, "Gmsh file formats".
 
-mod cells;
+mod gmsh_cells;
 mod entities;
-mod write;
+mod gmsh_writer;
 
 use std::path::Path;
 
@@ -168,7 +168,7 @@ impl Reader<'_> {
     }
 
     fn cell(&mut self, tag: usize, kind: i64, entity: (usize, i64), nodes: &[usize]) -> Result<u32> {
-        let (shape, order) = cells::of(kind).expect("its number of nodes was known");
+        let (shape, order) = gmsh_cells::of(kind).expect("its number of nodes was known");
         let found = order.iter().map(|&place| self.nodes.get(&nodes[place]).copied()).collect::<Option<Vec<u32>>>();
         let found = found.ok_or_else(|| self.source.wrong(format!("element {tag} has a node that is not there")))?;
         let id =
@@ -178,8 +178,9 @@ impl Reader<'_> {
     }
 
     fn nodes_of(&self, kind: i64) -> Result<usize> {
-        cells::of(kind).map(|(shape, _)| shape.nodes()).ok_or_else(|| {
-            let problem = self.source.wrong(format!("cells of Gmsh's type {kind}{} are not known", cells::name(kind)));
+        gmsh_cells::of(kind).map(|(shape, _)| shape.nodes()).ok_or_else(|| {
+            let problem =
+                self.source.wrong(format!("cells of Gmsh's type {kind}{} are not known", gmsh_cells::name(kind)));
             with_remedy(
                 problem,
                 "mesh with lines, triangles, quadrilaterals, tetrahedra, prisms or hexahedra of order 1 or 2",
@@ -202,7 +203,7 @@ impl Reader<'_> {
                 let tag = first.map_or_else(|| self.source.int(), Ok)?;
                 let tags = (0..tags).map(|_| self.source.int()).collect::<Result<Vec<_>>>()?;
                 let nodes = (0..size).map(|_| self.source.int().map(|tag| tag as usize)).collect::<Result<Vec<_>>>()?;
-                let dimension = cells::of(kind).map_or(0, |(shape, _)| shape.dim());
+                let dimension = gmsh_cells::of(kind).map_or(0, |(shape, _)| shape.dim());
                 let entity = (dimension, tags.get(1).copied().unwrap_or(0));
                 let cell = self.cell(tag as usize, kind, entity, &nodes)?;
                 if let Some(&group) = tags.first().filter(|&&group| group != 0) {
@@ -269,5 +270,5 @@ register! { MeshFormatEntry "gmsh",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/mesh_formats/gmsh.json")),
     build: build,
     endings: &["msh"],
-    write: Some(write::write),
+    write: Some(gmsh_writer::write),
 }

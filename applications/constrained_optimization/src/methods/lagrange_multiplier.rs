@@ -55,7 +55,7 @@ impl Method for LagrangeMultiplier {
         }
     }
 
-    fn idle_diagonal(&self) -> f64 {
+    fn inactive_diagonal(&self) -> f64 {
         match self.inactive_multipliers {
             InactiveMultipliers::Held => 1.0,
             InactiveMultipliers::WithoutEquation => 0.0,

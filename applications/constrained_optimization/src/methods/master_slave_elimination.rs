@@ -6,7 +6,7 @@
 
 use zelus_core::assembly::System;
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{ActiveSet, Interaction, LocalSystems, Retry, SetChange, StepView, Want};
+use zelus_core::entities::{ActiveSet, Interaction, LocalSystems, Request, Retry, SetChange, StepView};
 use zelus_core::model::{MasterSlaveConstraint, Model, ModelPart};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
@@ -45,8 +45,8 @@ fn own_force(springs: &System, view: &StepView<'_>, node: u32) -> Result<f64> {
     let mut local = LocalSystems::default();
     for block in &springs.elements {
         for at in (0..block.len()).filter(|&at| block.nodes(at).contains(&node)) {
-            local.reset(1, block.unknowns().len(), Want::Residual);
-            block.local_systems(view, at..at + 1, Want::Residual, &mut local)?;
+            local.reset(1, block.unknowns().len(), Request::Residual);
+            block.local_systems(view, at..at + 1, Request::Residual, &mut local)?;
             let rows = block.unknowns().iter().zip(&local.rhs);
             sum += rows.filter(|(row, _)| block.nodes(at)[row.node as usize] == node).map(|(_, r)| r).sum::<f64>();
         }

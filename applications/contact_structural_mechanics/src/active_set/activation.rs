@@ -30,10 +30,10 @@ pub(crate) fn clear_inactive(
         }
         match multiplier {
             Multiplier::Body => {}
-            Multiplier::None => state.law.carried = [0.0; 3],
+            Multiplier::None => state.law.history_traction = [0.0; 3],
             Multiplier::Scalar(_) => {
                 multiplier.set(slave_nodes, owner, [0.0; 3]);
-                state.law.kept_pressure = 0.0;
+                state.law.uzawa_pressure = 0.0;
             }
             Multiplier::Vector(_) => multiplier.set(slave_nodes, owner, [0.0; 3]),
         }
@@ -44,7 +44,7 @@ pub(crate) fn clear_inactive(
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ActivationCriterion<'a> {
     /// A gap below this length.
-    Reach(f64),
+    GapBelow(f64),
     /// A gap below a small share of the mesh size of the node.
     ShareOfMeshSize,
     /// These nodes, and those that are in contact already.
@@ -58,7 +58,7 @@ pub(crate) fn start(nodes: &Nodes, states: &mut SlaveStates, start: ActivationCr
     states.for_each(|slave, state| {
         let gap = state.gap().unwrap_or(FAR);
         let near = match start {
-            ActivationCriterion::Reach(reach) => gap < reach,
+            ActivationCriterion::GapBelow(range) => gap < range,
             ActivationCriterion::ShareOfMeshSize => gap < SIMPLE_REACH * sizes[mesh_nodes[slave.place()] as usize],
             ActivationCriterion::Touching(nodes) => nodes.contains(&slave) || state.law.active,
         };
@@ -71,13 +71,13 @@ pub(crate) fn start(nodes: &Nodes, states: &mut SlaveStates, start: ActivationCr
     });
 }
 
-/// The slave nodes, of these of each interface, of interfaces without contact that are at most `reach` mesh sizes farther from a master than the nearest
+/// The slave nodes, of these of each interface, of interfaces without contact that are at most `range` mesh sizes farther from a master than the nearest
 /// of their interface, where those are not in contact yet. `open` keeps the interfaces that had none when it was empty.
 pub(crate) fn nearest(
     nodes: &Nodes,
     states: &SlaveStates,
     slaves: &[Vec<SlaveIndex>],
-    reach: f64,
+    range: f64,
     open: &mut BTreeSet<usize>,
 ) -> BTreeSet<SlaveIndex> {
     let sizes = nodes.values.values(&NODAL_H, 0);
@@ -91,7 +91,7 @@ pub(crate) fn nearest(
         let least = facing().map(|&n| gap(n)).fold(f64::INFINITY, f64::min);
         found.extend(
             facing()
-                .filter(|&&n| gap(n) - least <= reach * sizes[states.mesh_node(n) as usize] && !states[n].law.active),
+                .filter(|&&n| gap(n) - least <= range * sizes[states.mesh_node(n) as usize] && !states[n].law.active),
         );
     }
     found

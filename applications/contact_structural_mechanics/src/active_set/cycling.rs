@@ -2,7 +2,7 @@
 //!
 //! A set that returns after others is a cycle: Newton's iteration would run through it for ever, because states change before
 //! displacements have followed. From then on, and from a limit of iterations on, states change in converged states only: the set is
-//! held until the iteration has converged with it, then the rules decide on an equilibrium. Where that comes back to a set too, or
+//! frozen until the iteration has converged with it, then the rules decide on an equilibrium. Where that comes back to a set too, or
 //! takes long, open and closed nodes are exchanged by block principal pivoting, which is finite. Stick and slip have no such method:
 //! where their sets come back, no set fulfils all conditions at the resolution of the mesh; that one is taken which violates them least,
 //! if that is little, and the step fails otherwise.
@@ -16,9 +16,9 @@ use crate::law::{Decision, NodeState};
 
 /// Longest cycle that is looked for, in iterations.
 const LONGEST: usize = 6;
-/// Iterations after which sets that still change are held.
-const RESTLESS: usize = 15;
-/// Converged states in which a held set may change.
+/// Iterations after which sets that still change are frozen.
+const ITERATIONS_BEFORE_FREEZING: usize = 15;
+/// Converged states in which a frozen set may change.
 const MOST_CHANGES: usize = 30;
 /// Converged states of a step in which open and closed nodes are exchanged at most.
 const MOST_EXCHANGES: usize = 500;
@@ -27,7 +27,7 @@ pub(crate) const ALLOWED: f64 = 0.01;
 /// Nodes that a warning names.
 const NAMED: usize = 8;
 
-/// Outcome of a converged state with a held set.
+/// Outcome of a converged state with a frozen set.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum SetOutcome {
     /// The state fulfils the conditions, or nearly so where none does better.
@@ -45,7 +45,7 @@ pub(crate) struct CycleGuard {
     sets: Vec<Vec<NodeState>>,
     /// Whether states change in converged states only.
     #[serde(skip)]
-    held: bool,
+    frozen: bool,
     /// Sets that have converged, with their violation.
     #[serde(skip)]
     converged: Vec<(Vec<NodeState>, f64)>,
@@ -66,12 +66,12 @@ impl CycleGuard {
 
     /// Whether states change in converged states only.
     pub(crate) fn holds(&self) -> bool {
-        self.held
+        self.frozen
     }
 
-    /// Takes back all changes of a set that is held.
+    /// Takes back all changes of a set that is frozen.
     pub(crate) fn restrict(&self, decisions: &mut [(SlaveIndex, Decision)], before: &[NodeState]) {
-        if self.held {
+        if self.frozen {
             decisions.iter_mut().zip(before).for_each(|((_, decision), &was)| decision.stay(was, was));
         }
     }
@@ -83,15 +83,15 @@ impl CycleGuard {
         ids: &dyn Fn(SlaveIndex) -> usize,
         step: usize,
     ) -> Option<Diagnostic> {
-        if self.held {
+        if self.frozen {
             return None;
         }
         self.sets.push(decisions.iter().map(|(_, decision)| decision.state).collect());
         let Some(period) = self.period() else {
-            self.held = self.sets.len() >= RESTLESS;
+            self.frozen = self.sets.len() >= ITERATIONS_BEFORE_FREEZING;
             return None;
         };
-        self.held = true;
+        self.frozen = true;
         if std::mem::replace(&mut self.warned, true) {
             return None;
         }
@@ -106,7 +106,7 @@ impl CycleGuard {
         ))
     }
 
-    /// Outcome of the decisions in a converged state with a held set, of which it may take back a part; `before` is
+    /// Outcome of the decisions in a converged state with a frozen set, of which it may take back a part; `before` is
     /// that set, `largest` the largest pressure.
     ///
     /// All states change as they want to, unless that leads back to a set that has converged before. Then open and closed nodes are

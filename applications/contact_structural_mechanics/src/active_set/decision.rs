@@ -12,12 +12,12 @@ use crate::friction::slip;
 use crate::interface::SlaveIndex;
 use crate::law::constrained_multiplier::along_free_tangents;
 use crate::law::rules::{self, Decision, SlaveNumbers};
-use crate::law::{Augmentation, Held, NodeState, StepParameters};
+use crate::law::{Augmentation, MultiplierConstraint, NodeState, StepParameters};
 use crate::mortar::{tangent, tangential};
 use crate::pairs::{Formulation, Multiplier};
-use crate::resolution::Resolution;
 use crate::settings::Setup;
 use crate::slave_nodes::SlaveStates;
+use crate::tolerances::Tolerances;
 
 /// The rules of a formulation, with the numbers of the step.
 #[derive(Clone, Copy)]
@@ -27,13 +27,13 @@ pub(crate) struct Rules<'a> {
     /// Settings and numbers of the step.
     pub parameters: &'a StepParameters,
     /// Smallest lengths and tractions that decide.
-    pub resolution: Resolution,
+    pub tolerances: Tolerances,
 }
 
 impl<'a> Rules<'a> {
     /// Rules with the settings and numbers of a setup.
     pub(crate) fn of(setup: &'a Setup) -> Self {
-        Self { formulation: setup.settings.formulation, parameters: &setup.parameters, resolution: setup.resolution }
+        Self { formulation: setup.settings.formulation, parameters: &setup.parameters, tolerances: setup.tolerances }
     }
 
     /// The decision for every slave node, and the states the nodes are in.
@@ -80,8 +80,8 @@ impl<'a> Rules<'a> {
     pub(crate) fn passed_through(self, part: &ModelPart, states: &SlaveStates) -> Option<String> {
         let facing = states.iter().filter(|(_, state)| !state.kinematics.isolated);
         let facing: Vec<(SlaveIndex, SlaveNumbers)> = facing.map(|(n, _)| (n, self.numbers(part, states, n))).collect();
-        let pressed = facing.iter().filter(|(_, numbers)| numbers.state.is_active());
-        let largest = pressed.map(|(_, numbers)| -numbers.pressure()).fold(0.0, f64::max);
+        let in_contact = facing.iter().filter(|(_, numbers)| numbers.state.is_active());
+        let largest = in_contact.map(|(_, numbers)| -numbers.pressure()).fold(0.0, f64::max);
         let inside: Vec<_> =
             facing.iter().filter(|(_, numbers)| numbers.has_passed_through(ALLOWED * largest)).collect();
         let deepest = inside.iter().min_by(|(_, a), (_, b)| a.gap.total_cmp(&b.gap))?;
@@ -132,7 +132,7 @@ impl<'a> Rules<'a> {
                 state.law.traction = decision.traction;
                 // With Nitsche's method points carry the tractions of the integration.
                 if !matches!(self.formulation.multiplier, Multiplier::Body) {
-                    state.law.carried = decision.traction;
+                    state.law.history_traction = decision.traction;
                 }
             }
             if let Some(multiplier) = decision.multiplier {
@@ -176,33 +176,34 @@ impl<'a> Rules<'a> {
     /// The penalty method states tractions ε WG, those of all others are multipliers. By Uzawa's iteration p° + ε g decides: p° is
     /// kept until the next update, also of a node that is not in contact meanwhile.
     pub(super) fn numbers(self, part: &ModelPart, states: &SlaveStates, slave: SlaveIndex) -> SlaveNumbers {
-        let Self { formulation, parameters, resolution } = self;
+        let Self { formulation, parameters, tolerances } = self;
         let (state, owner) = (&states[slave], states.owner(slave));
-        let (normal, area, penalty, held) =
-            (state.kinematics.normal, state.kinematics.area, state.parameters.penalty, state.law.held);
+        let (normal, area, penalty, constraints) =
+            (state.kinematics.normal, state.kinematics.area, state.parameters.penalty, state.law.constraints);
         let by_area = if area > 0.0 { area.recip() } else { 0.0 };
-        let kept = if state.law.kept_pressure == 0.0 { 0.0 } else { state.law.kept_pressure / penalty };
-        let slip = resolution.vector_of(slip(part, states, slave, formulation.multiplier, parameters));
+        let kept = if state.law.uzawa_pressure == 0.0 { 0.0 } else { state.law.uzawa_pressure / penalty };
+        let slip = tolerances.vector_of(slip(part, states, slave, formulation.multiplier, parameters));
         let stiffness = match formulation.multiplier {
             Multiplier::Scalar(_) | Multiplier::Vector(_) => parameters.nodal_stiffness(penalty, area),
             Multiplier::None if parameters.weighted_penalty => penalty * area,
             Multiplier::None | Multiplier::Body => penalty,
         };
         let whole = formulation.multiplier.vector(&part.slave_nodes, owner, normal);
-        let driven = held.contains(&Held::KeptInStick);
+        let driven = constraints.contains(&MultiplierConstraint::ConstantInStick);
         let multiplier = match formulation.multiplier {
             // No multiplier restrains motion that supports prescribe: the slip itself gives the traction that would.
             Multiplier::Vector(_) if driven => {
-                let along = |c: usize| held[c] == Held::KeptInStick && norm(slip) > 0.0;
+                let along = |c: usize| constraints[c] == MultiplierConstraint::ConstantInStick && norm(slip) > 0.0;
                 let normal_part = scale(normal, dot(whole, normal));
                 let kept = sub(whole, normal_part);
                 let free = std::array::from_fn(|c| if along(c) { 0.0 } else { kept[c] });
                 add(add(normal_part, free), scale(slip, stiffness / parameters.scale_factor))
             }
             // A sliding node slides along the directions that are free.
-            Multiplier::Vector(_) => {
-                add(scale(normal, dot(whole, normal)), along_free_tangents(tangential(whole, normal), normal, held))
-            }
+            Multiplier::Vector(_) => add(
+                scale(normal, dot(whole, normal)),
+                along_free_tangents(tangential(whole, normal), normal, constraints),
+            ),
             _ => whole,
         };
         SlaveNumbers {
@@ -210,7 +211,7 @@ impl<'a> Rules<'a> {
             normal,
             multiplier,
             solved: formulation.multiplier.is_unknown(),
-            gap: resolution.length_of(state.counted_gap(parameters) * by_area + kept),
+            gap: tolerances.length_of(state.counted_gap(parameters) * by_area + kept),
             slip,
             trial: state.law.trial,
             tangent: state.law.tangent,
@@ -219,7 +220,7 @@ impl<'a> Rules<'a> {
             friction: state.parameters.friction,
             scale_factor: parameters.scale_factor,
             tangent_factor: parameters.tangent_factor,
-            resolution,
+            tolerances,
         }
     }
 }

@@ -9,17 +9,17 @@ use zelus_core::vector3::{dot, norm};
 
 use crate::interface::SlaveIndex;
 use crate::law::{Decision, NodeState};
-use crate::resolution::Resolution;
 use crate::slave_nodes::SlaveStates;
+use crate::tolerances::Tolerances;
 
 /// Step start: holds the active slave nodes of interfaces without pressure in contact.
 ///
 /// `slaves` are the slave nodes of each interface.
-pub(crate) fn hold_open_interfaces(states: &mut SlaveStates, slaves: &[Vec<SlaveIndex>], resolution: Resolution) {
+pub(crate) fn hold_open_interfaces(states: &mut SlaveStates, slaves: &[Vec<SlaveIndex>], tolerances: Tolerances) {
     release(states);
     for nodes in slaves {
         let presses = |&node: &SlaveIndex| {
-            resolution.exceeds(-dot(states[node].law.trial, states[node].kinematics.normal), 0.0, false)
+            tolerances.exceeds(-dot(states[node].law.trial, states[node].kinematics.normal), 0.0, false)
         };
         if !nodes.iter().any(presses) {
             nodes.iter().for_each(|&node| states[node].law.forced_active = states[node].law.active);
@@ -52,9 +52,9 @@ pub(crate) fn hold_turned(
     states: &mut SlaveStates,
     decisions: &mut [(SlaveIndex, Decision)],
     before: &[NodeState],
-    resolution: Resolution,
+    tolerances: Tolerances,
 ) {
-    let counts = |traction: [f64; 3]| resolution.exceeds(norm(traction), 0.0, false);
+    let counts = |traction: [f64; 3]| tolerances.exceeds(norm(traction), 0.0, false);
     for ((node, decision), &was) in decisions.iter_mut().zip(before) {
         let state = &mut states[*node];
         let slides = was == NodeState::Slip && decision.state == NodeState::Slip;

@@ -12,14 +12,16 @@ use zelus_core::vector3::{dot, scale};
 use super::decision::Rules;
 use crate::interface::SlaveIndex;
 use crate::law::rules::{self, Decision, SlaveNumbers};
-use crate::law::{Held, NodeState};
+use crate::law::{MultiplierConstraint, NodeState};
 use crate::pairs::Multiplier;
 use crate::slave_nodes::{SlaveState, SlaveStates};
 
 /// The slave nodes that are decided on together: all that face a master and that no support constrains.
 pub(super) fn slave_nodes(states: &SlaveStates) -> Vec<SlaveIndex> {
     let is_free = |state: &SlaveState| {
-        !state.kinematics.isolated && state.kinematics.area > 0.0 && state.law.held == [Held::Free; 3]
+        !state.kinematics.isolated
+            && state.kinematics.area > 0.0
+            && state.law.constraints == [MultiplierConstraint::Free; 3]
     };
     states.iter().filter(|(_, state)| is_free(state)).map(|(slave, _)| slave).collect()
 }
@@ -70,8 +72,8 @@ pub(super) fn decide(
     }
     let m = (0..n * n).map(|at| change(at, is_active(at / n)) / given[at % n]).collect();
     let small = |(numbers, &slave): (&SlaveNumbers, &SlaveIndex)| {
-        let length = numbers.resolution.length.max(numbers.resolution.traction / numbers.stiffness);
-        let sizes = [numbers.resolution.traction / k, k * states[slave].kinematics.area * length];
+        let length = numbers.tolerances.length.max(numbers.tolerances.traction / numbers.stiffness);
+        let sizes = [numbers.tolerances.traction / k, k * states[slave].kinematics.area * length];
         if numbers.state.is_active() { sizes } else { [sizes[1], sizes[0]] }
     };
     let small = numbers.iter().zip(slaves).map(small).collect();

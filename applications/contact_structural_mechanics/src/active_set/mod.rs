@@ -6,16 +6,16 @@ pub(crate) mod activation;
 mod cycling;
 mod decision;
 pub(crate) mod forced_points;
-mod holding;
+mod supported_nodes;
 mod joint_decision;
-mod measured_resolution;
-mod set_stage;
+mod measured_tolerances;
+mod active_set_update;
 mod sliding;
 
 pub(crate) use activation::ActivationCriterion;
+pub(crate) use active_set_update::ActiveSetUpdate;
 pub(crate) use decision::Rules;
-pub(crate) use holding::{FacetsOfPair, Holding};
-pub(crate) use measured_resolution::{resolution, resolved_length};
-pub(crate) use set_stage::SetStage;
+pub(crate) use measured_tolerances::{length_tolerance, tolerances};
 #[cfg(test)]
 pub(crate) use sliding::find_tangents;
+pub(crate) use supported_nodes::{FacetsOfPair, SupportedNodes};

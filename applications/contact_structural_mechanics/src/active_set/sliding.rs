@@ -9,7 +9,7 @@ use super::decision::Rules;
 use crate::friction::slip;
 use crate::interface::SlaveIndex;
 use crate::law::constrained_multiplier::along_free_tangents;
-use crate::law::{Augmentation, NodeState, SlipRule, StepParameters, TURNED, Turning};
+use crate::law::{Augmentation, DirectionRotation, NodeState, SlipRule, StepParameters, TURNED};
 use crate::mortar::{tangent, tangential};
 use crate::pairs::Multiplier;
 use crate::slave_nodes::{SlaveState, SlaveStates};
@@ -34,15 +34,15 @@ pub(crate) fn find_tangents(
     keeps_direction: bool,
     reversals: &mut BTreeMap<SlaveIndex, usize>,
 ) {
-    let Rules { formulation, parameters, resolution } = rules;
+    let Rules { formulation, parameters, tolerances } = rules;
     let dimension = part.info.domain_size;
     let pure = parameters.slip_rule == SlipRule::Pure;
-    let decided = |traction: [f64; 3]| if resolution.exceeds(norm(traction), 0.0, false) { traction } else { [0.0; 3] };
+    let decided = |traction: [f64; 3]| if tolerances.exceeds(norm(traction), 0.0, false) { traction } else { [0.0; 3] };
     for slave in states.slaves().iter().copied() {
         let state = &states[slave];
         let (contact, normal, before) = (state.contact(), state.kinematics.normal, state.law.tangent);
         let by_slip = || {
-            let slip = resolution.vector_of(slip(part, states, slave, formulation.multiplier, parameters));
+            let slip = tolerances.vector_of(slip(part, states, slave, formulation.multiplier, parameters));
             // Bodies that stand still keep the direction in which they came.
             let pressure = match formulation.multiplier {
                 Multiplier::Vector(_) => {
@@ -58,17 +58,17 @@ pub(crate) fn find_tangents(
                 [0.0; 3]
             }
         };
-        let mut turning = Turning::default();
+        let mut rotation = DirectionRotation::default();
         let direction = match formulation.multiplier {
             Multiplier::Vector(_) => {
                 let whole = formulation.multiplier.value(&part.slave_nodes, states.owner(slave));
-                let sliding = along_free_tangents(tangential(whole, normal), normal, state.law.held);
+                let sliding = along_free_tangents(tangential(whole, normal), normal, state.law.constraints);
                 let multiplier = add(scale(normal, dot(whole, normal)), sliding);
                 match contact {
                     NodeState::Slip if dimension == 3 => {
                         let slip = slip(part, states, slave, formulation.multiplier, parameters);
                         let trial = TrialTraction::new(state, slip, parameters, multiplier);
-                        turning = trial.turning(state.kinematics.pairs, pure, parameters);
+                        rotation = trial.rotation(state.kinematics.pairs, pure, parameters);
                         if pure { by_slip() } else { decided(trial.traction) }
                     }
                     NodeState::Inactive if !pure => [0.0; 3],
@@ -83,7 +83,7 @@ pub(crate) fn find_tangents(
             Multiplier::None if !pure => {
                 let trial = decided(state.law.trial);
                 if contact == NodeState::Slip && dimension == 3 && trial != [0.0; 3] {
-                    turning.by_slip = norm(trial).recip();
+                    rotation.by_slip = norm(trial).recip();
                 }
                 trial
             }
@@ -96,9 +96,9 @@ pub(crate) fn find_tangents(
             kept = *count > MOST_REVERSALS;
         }
         let any = tangent(if kept { before } else { direction }, normal, dimension);
-        let free = along_free_tangents(any, normal, state.law.held);
+        let free = along_free_tangents(any, normal, state.law.constraints);
         let tangent = if norm(free) > LEAST_FREE { normalised(free) } else { any };
-        (states[slave].law.tangent, states[slave].law.turning) = (tangent, turning);
+        (states[slave].law.tangent, states[slave].law.rotation) = (tangent, rotation);
     }
 }
 
@@ -122,14 +122,14 @@ impl TrialTraction {
     }
 
     /// Trial tractions within the bound belong to nodes about to stick; there the direction turns as at the bound.
-    fn turning(&self, pairs: u32, pure: bool, parameters: &StepParameters) -> Turning {
+    fn rotation(&self, pairs: u32, pure: bool, parameters: &StepParameters) -> DirectionRotation {
         let size = norm(if pure { self.of_slip } else { self.traction }).max(self.bound);
         if size <= 0.0 || self.bound <= 0.0 {
-            return Turning::default();
+            return DirectionRotation::default();
         }
         // Where pairs augment, each states the law for the whole area.
         let times = if parameters.augmentation == Augmentation::Pair { f64::from(pairs.max(1)) } else { 1.0 };
-        Turning {
+        DirectionRotation {
             by_slip: times * parameters.tangent_factor * self.bound / size,
             by_multiplier: if pure { 0.0 } else { parameters.scale_factor / size },
         }

@@ -6,14 +6,14 @@
 //! The step that converges in the end is that of the deck.
 
 use serde::{Deserialize, Serialize};
-use zelus_core::entities::Outer;
+use zelus_core::entities::OuterLoop;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{norm, scale};
 
 use crate::law::FrictionLaw;
 use crate::mortar::tangent;
-use crate::resolution::Resolution;
 use crate::slave_nodes::SlaveStates;
+use crate::tolerances::Tolerances;
 
 /// Shares of friction that act one after the other, each from where the one before has converged.
 const SHARES: [f64; 5] = [0.0, 0.1, 0.3, 0.6, 1.0];
@@ -70,9 +70,9 @@ impl FrictionRamp {
         part: &mut ModelPart,
         states: &mut SlaveStates,
         law: &FrictionLaw,
-        resolution: Resolution,
-    ) -> Outer {
-        let Some((stage, numbers)) = self.waiting.take() else { return Outer::Done };
+        tolerances: Tolerances,
+    ) -> OuterLoop {
+        let Some((stage, numbers)) = self.waiting.take() else { return OuterLoop::Done };
         let share = SHARES[stage + 1];
         let column = part.nodes.values.values_mut(law.variable, 0);
         column.iter_mut().zip(&numbers).for_each(|(now, number)| *now = share * number);
@@ -81,18 +81,18 @@ impl FrictionRamp {
         }
         states.read_friction(&part.nodes, law);
         if stage > 0 {
-            return Outer::Again;
+            return OuterLoop::Continue;
         }
         let dimension = part.info.domain_size;
         states.for_each(|_, state| {
             if state.law.active {
                 let area = state.kinematics.area;
                 let slip = if area > 0.0 { scale(state.kinematics.weighted_slip, area.recip()) } else { [0.0; 3] };
-                let slides = norm(resolution.vector_of(slip)) > 0.0 || state.parameters.friction.is_smooth();
+                let slides = norm(tolerances.vector_of(slip)) > 0.0 || state.parameters.friction.is_smooth();
                 state.law.tangent = tangent(slip, state.kinematics.normal, dimension);
                 state.law.slides = Some(slides);
             }
         });
-        Outer::Again
+        OuterLoop::Continue
     }
 }

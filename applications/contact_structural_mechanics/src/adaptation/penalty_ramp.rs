@@ -5,7 +5,7 @@
 //! penalty, and each converged state raises it, so that motions are small where the spring is stiff.
 
 use serde::{Deserialize, Serialize};
-use zelus_core::entities::Outer;
+use zelus_core::entities::OuterLoop;
 use zelus_core::model::ProcessInfo;
 
 use crate::slave_nodes::SlaveStates;
@@ -46,13 +46,13 @@ impl PenaltyRamp {
     }
 
     /// The iteration has converged with the present share.
-    pub(crate) fn after_convergence(&mut self, info: &ProcessInfo, states: &mut SlaveStates) -> Outer {
+    pub(crate) fn after_convergence(&mut self, info: &ProcessInfo, states: &mut SlaveStates) -> OuterLoop {
         if self.share >= 1.0 {
-            return Outer::Done;
+            return OuterLoop::Done;
         }
         self.share = (self.share * RISE).min(1.0);
         self.set(info, states);
-        Outer::Again
+        OuterLoop::Continue
     }
 
     fn set(self, info: &ProcessInfo, states: &mut SlaveStates) {

@@ -1,7 +1,7 @@
 //! Uzawa's outer loop: the Uzawa pressure follows the multipliers until no elastic gap is left (eq. D.10).
 
 use serde::{Deserialize, Serialize};
-use zelus_core::entities::Outer;
+use zelus_core::entities::OuterLoop;
 use zelus_core::model::SlaveNodes;
 
 use crate::interface::SlaveIndex;
@@ -36,25 +36,25 @@ impl Uzawa {
         states: &mut SlaveStates,
         scale_factor: f64,
         settings: UzawaSettings,
-    ) -> Outer {
+    ) -> OuterLoop {
         let multipliers = slave_nodes.history.values(&LAGRANGE_MULTIPLIER_CONTACT_PRESSURE, 0);
         let pressure = |(slave, state): (SlaveIndex, &SlaveState)| {
             if state.law.active { (scale_factor * multipliers[states.owner(slave) as usize]).min(0.0) } else { 0.0 }
         };
         let pressures: Vec<f64> = states.iter().map(pressure).collect();
         let size = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
-        let change = size(&mut states.iter().zip(&pressures).map(|((_, state), p)| p - state.law.kept_pressure));
+        let change = size(&mut states.iter().zip(&pressures).map(|((_, state), p)| p - state.law.uzawa_pressure));
         let total = size(&mut pressures.iter().copied());
         if self.updates > 0 && self.last > 0.0 {
             self.rate = change / self.last;
         }
         self.last = change;
         if change <= settings.tolerance * total {
-            return Outer::Done;
+            return OuterLoop::Done;
         }
         if self.updates == settings.max_updates {
             let relative = change / total;
-            return Outer::Failed(format!(
+            return OuterLoop::Failed(format!(
                 "multipliers still change by {relative:.1e} of their size after {} updates, at the rate {:.3}: raise \
                  \"stiffness_factor\" or \"max_multiplier_updates\"",
                 self.updates, self.rate
@@ -62,7 +62,7 @@ impl Uzawa {
         }
         self.updates += 1;
         let mut pressures = pressures.into_iter();
-        states.for_each(|_, state| state.law.kept_pressure = pressures.next().unwrap_or(0.0));
-        Outer::Again
+        states.for_each(|_, state| state.law.uzawa_pressure = pressures.next().unwrap_or(0.0));
+        OuterLoop::Continue
     }
 }

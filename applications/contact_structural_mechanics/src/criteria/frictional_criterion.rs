@@ -9,8 +9,8 @@ use std::cell::LazyCell;
 use zelus_core::Result;
 use zelus_core::model::Owner;
 use zelus_core::strategies::{
-    Block, Check, ConvergenceCriterion, CriterionRequest, Form, Measure, Measures, Tolerance, Verdict, is_last_digit,
-    is_round_off,
+    Block, ConvergenceCheck, ConvergenceCriterion, CriterionRequest, Form, Measure, Measures, Tolerance, Verdict,
+    is_last_digit, is_round_off,
 };
 use zelus_core::vector3::{dot, sub};
 use zelus_structural_mechanics::variables::NORMAL;
@@ -174,7 +174,7 @@ impl ConvergenceCriterion for FrictionalCriterion {
             let converged = tolerance.met(ratio, absolute)
                 || (part > 0 && absolute <= self.threshold * normal)
                 || is_done(part, size, reference);
-            checks.push(Check {
+            checks.push(ConvergenceCheck {
                 label: PARTS[part][usize::from(self.multiplier == Form::Increment)],
                 ratio,
                 ratio_tolerance: tolerance.relative,

@@ -20,14 +20,14 @@ pub(crate) fn slip(
 ) -> [f64; 3] {
     let state = &states[slave];
     match multiplier {
-        Multiplier::Vector(_) if parameters.compliant && state.law.active => {
+        Multiplier::Vector(_) if parameters.regularised && state.law.active => {
             let whole = multiplier.value(&part.slave_nodes, states.owner(slave));
             let traction = scale(tangential(whole, state.kinematics.normal), parameters.scale_factor);
             let elastic = parameters.tangent_factor * state.parameters.penalty;
             along_free_tangents(
                 scale(sub(state.law.trial, traction), elastic.recip()),
                 state.kinematics.normal,
-                state.law.held,
+                state.law.constraints,
             )
         }
         _ if state.kinematics.area > 0.0 => scale(state.kinematics.weighted_slip, state.kinematics.area.recip()),

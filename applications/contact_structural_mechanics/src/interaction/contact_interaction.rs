@@ -7,15 +7,15 @@ use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
     ActiveSet, Complementary, ComplementaryCondition, Coupling, EntityBlock, FirstIterate, Interaction, Join, Massless,
-    MasslessNodes, Outer, PairState, Responses, Retry, SetChange,
+    MasslessNodes, OuterLoop, PairState, Responses, Retry, SetChange,
 };
-use zelus_core::model::{Carriers, ModelPart};
-use zelus_core::{Carrier, Result, State};
+use zelus_core::model::{DofOwners, ModelPart};
+use zelus_core::{Result, State, StateMapper};
 use zelus_structural_mechanics::variables::{NORMAL, VELOCITY};
 
 use super::contact_state::{ContactState, RememberedContact};
 use super::outer_loops::OuterLoops;
-use crate::active_set::{ActivationCriterion, SetStage, forced_points};
+use crate::active_set::{ActivationCriterion, ActiveSetUpdate, forced_points};
 use crate::adaptation::{Growth, StablePenalty};
 use crate::flags::CONTACT;
 use crate::friction;
@@ -37,7 +37,7 @@ const RELAXATION: f64 = 1e-5;
 /// Contact in a model part.
 pub struct ContactInteraction {
     contact: ContactState,
-    set: SetStage,
+    set: ActiveSetUpdate,
     loops: OuterLoops,
     in_contact: InterfacesInContact,
     acting: bool,
@@ -57,7 +57,7 @@ pub struct ContactInteraction {
 #[derive(Serialize, Deserialize)]
 struct SavedContact {
     contact: RememberedContact,
-    set: SetStage,
+    set: ActiveSetUpdate,
     loops: OuterLoops,
     in_contact: InterfacesInContact,
     stable_penalty: StablePenalty,
@@ -67,10 +67,10 @@ struct SavedContact {
 
 #[typetag::serde(name = "contact")]
 impl State for SavedContact {
-    fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.contact.carry(carrier);
-        self.loops.carry(carrier);
-        carrier.nodes(&mut self.near_nodes);
+    fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        self.contact.remap(mapper);
+        self.loops.remap(mapper);
+        mapper.nodes(&mut self.near_nodes);
     }
 }
 
@@ -82,7 +82,7 @@ impl ContactInteraction {
     pub fn new(settings: ContactSettings, part: &mut ModelPart) -> Result<Self> {
         Ok(Self {
             contact: ContactState::new(settings, part)?,
-            set: SetStage::default(),
+            set: ActiveSetUpdate::default(),
             loops: OuterLoops::default(),
             in_contact: InterfacesInContact::default(),
             acting: true,
@@ -192,7 +192,7 @@ impl Interaction for ContactInteraction {
         Ok(())
     }
 
-    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+    fn finalize_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.loops.accept(part, &mut self.contact);
         if self.acting {
             self.in_contact.accept(&self.contact.pairing.slaves_by_interface(), &self.contact.states);
@@ -274,14 +274,14 @@ impl Interaction for ContactInteraction {
     }
 
     fn pairs(&self, part: &ModelPart) -> Vec<PairState> {
-        let ContactState { setup: Setup { settings, parameters, resolution, .. }, pairing, states, .. } = &self.contact;
+        let ContactState { setup: Setup { settings, parameters, tolerances, .. }, pairing, states, .. } = &self.contact;
         let multiplier = settings.formulation.multiplier;
         let of_node = |slave: SlaveIndex, state: &SlaveState| {
             heat(state.law.traction, slip(part, states, slave, multiplier, parameters), state.kinematics.area)
         };
         let (parts, frictional) = ((&settings.parts, &settings.slaves), settings.formulation.frictional());
         let slaves = pairing.slaves_by_interface();
-        pair_states(&pairing.interfaces, parts, (states, &slaves), frictional, resolution.length, of_node)
+        pair_states(&pairing.interfaces, parts, (states, &slaves), frictional, tolerances.length, of_node)
     }
 
     fn node_state(&self, node: u32) -> Option<&'static str> {
@@ -323,10 +323,10 @@ impl Interaction for ContactInteraction {
 }
 
 impl Coupling for ContactInteraction {
-    fn unknowns(&self, part: &ModelPart) -> Vec<Carriers> {
+    fn unknowns(&self, part: &ModelPart) -> Vec<DofOwners> {
         let unknowns = self.contact.setup.settings.formulation.multiplier.unknowns(part.info.domain_size);
         let owners = self.contact.states.owners();
-        unknowns.into_iter().map(|variable| Carriers::of_slaves(variable, owners.iter().copied())).collect()
+        unknowns.into_iter().map(|variable| DofOwners::of_slaves(variable, owners.iter().copied())).collect()
     }
 
     fn blocks(&self) -> Vec<&dyn EntityBlock> {
@@ -341,7 +341,7 @@ impl Coupling for ContactInteraction {
         self.contact.pairing.graph
     }
 
-    fn idle_diagonal(&self) -> f64 {
+    fn inactive_diagonal(&self) -> f64 {
         self.contact.setup.parameters.scale_factor
     }
 
@@ -407,9 +407,9 @@ impl ActiveSet for ContactInteraction {
         }
     }
 
-    fn after_convergence(&mut self, part: &mut ModelPart) -> Result<Outer> {
+    fn after_convergence(&mut self, part: &mut ModelPart) -> Result<OuterLoop> {
         if !self.acting {
-            return Ok(Outer::Done);
+            return Ok(OuterLoop::Done);
         }
         let outer = self.loops.judge(part, &mut self.contact, &mut self.set)?;
         self.contact.publish(part);
@@ -444,18 +444,18 @@ impl ActiveSet for ContactInteraction {
 
 impl Complementary for ContactInteraction {
     fn conditions(&self, part: &ModelPart) -> Vec<ComplementaryCondition> {
-        SetStage::conditions(part, &self.contact.states, &self.contact.setup)
+        ActiveSetUpdate::conditions(part, &self.contact.states, &self.contact.setup)
     }
 
-    fn let_all_act(&mut self) {
+    fn activate_all(&mut self) {
         let mut all = self.contact.states.clone();
-        for slave in SetStage::decided_together(&all) {
+        for slave in ActiveSetUpdate::decided_together(&all) {
             (all[slave].law.active, all[slave].law.slides) = (true, Some(true));
         }
         self.contact.pairing.set_states(&all);
     }
 
-    fn let_decided_act(&mut self) {
+    fn restore_decisions(&mut self) {
         self.contact.pairing.set_states(&self.contact.states);
     }
 
@@ -463,14 +463,14 @@ impl Complementary for ContactInteraction {
         &mut self,
         part: &mut ModelPart,
         responses: Option<&Responses>,
-    ) -> Result<(Outer, Option<String>)> {
+    ) -> Result<(OuterLoop, Option<String>)> {
         let (states, setup) = (&mut self.contact.states, &self.contact.setup);
         let said = self.set.decide_together(part, states, setup, responses);
         if said.is_none() {
             return Ok((self.after_convergence(part)?, None));
         }
         self.contact.publish(part);
-        Ok((Outer::Again, said))
+        Ok((OuterLoop::Continue, said))
     }
 }
 

@@ -3,10 +3,10 @@
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
-use zelus_core::{Carrier, Result};
+use zelus_core::{Result, StateMapper};
 
 use crate::active_set::activation::{self, ActivationCriterion};
-use crate::active_set::{FacetsOfPair, Holding, SetStage, forced_points};
+use crate::active_set::{ActiveSetUpdate, FacetsOfPair, SupportedNodes, forced_points};
 use crate::flags::{MASTER, SLAVE};
 use crate::friction;
 use crate::interface::{
@@ -14,12 +14,12 @@ use crate::interface::{
 };
 use crate::pairing::{Pairing, PairingState, integrate, take_normals_of_masters};
 use crate::pairs::Pair;
-use crate::resolution::Resolution;
 use crate::results::{InterfaceSurfaces, write_states};
 use crate::safeguards::settle_all;
 use crate::search::{GapCheck, assign_roles};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::{SlaveStates, multiplier_columns, owners_name, write_status};
+use crate::tolerances::Tolerances;
 
 /// State of contact.
 pub(super) struct ContactState {
@@ -30,7 +30,7 @@ pub(super) struct ContactState {
     /// The slave nodes.
     pub states: SlaveStates,
     /// Slave nodes that supports hold.
-    holding: Holding,
+    supported_nodes: SupportedNodes,
     steps_since_search: usize,
     saved: SlaveStates,
     /// Whether slave nodes begin inside their masters.
@@ -46,15 +46,15 @@ pub(super) struct ContactState {
 pub(super) struct RememberedContact {
     pairing: PairingState,
     states: SlaveStates,
-    holding: Holding,
-    resolution: Resolution,
+    supported_nodes: SupportedNodes,
+    tolerances: Tolerances,
     steps_since_search: usize,
 }
 
 impl RememberedContact {
-    /// See [`State::carry`](zelus_core::State::carry): facets are everywhere the same.
-    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.holding.carry(carrier);
+    /// See [`State::remap`](zelus_core::State::remap): facets are everywhere the same.
+    pub(super) fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        self.supported_nodes.remap(mapper);
     }
 }
 
@@ -77,7 +77,7 @@ impl ContactState {
             pairing: Pairing::new(interfaces, settings.nodal_normals),
             setup: Setup::new(settings),
             states: SlaveStates::default(),
-            holding: Holding::default(),
+            supported_nodes: SupportedNodes::default(),
             steps_since_search: usize::MAX,
             saved: SlaveStates::default(),
             surfaces: InterfaceSurfaces::default(),
@@ -89,7 +89,7 @@ impl ContactState {
         let angle = self.setup.settings.solver.feature_angle;
         let name = self.owners_name();
         let table = self.pairing.make_patches(part, angle, &name);
-        write_nodal_normals(part, &self.pairing, &self.holding);
+        write_nodal_normals(part, &self.pairing, &self.supported_nodes);
         let formulation = self.setup.settings.formulation;
         if let Some((name, components)) = formulation.multiplier.column() {
             part.slave_nodes.history.add_named(name, components);
@@ -155,8 +155,8 @@ impl ContactState {
         RememberedContact {
             pairing: self.pairing.state(),
             states: self.states.clone(),
-            holding: self.holding.clone(),
-            resolution: self.setup.resolution,
+            supported_nodes: self.supported_nodes.clone(),
+            tolerances: self.setup.tolerances,
             steps_since_search: self.steps_since_search,
         }
     }
@@ -166,10 +166,11 @@ impl ContactState {
     /// # Errors
     /// Errors of making blocks.
     pub(super) fn resume(&mut self, part: &mut ModelPart, state: RememberedContact) -> Result<()> {
-        let RememberedContact { pairing, states, holding, resolution, steps_since_search } = state;
-        holding.check(part.nodes.len())?;
-        (self.holding, self.setup.resolution, self.steps_since_search) = (holding, resolution, steps_since_search);
-        self.pairing.resume(self.holding.planes(), &self.setup, pairing)?;
+        let RememberedContact { pairing, states, supported_nodes, tolerances, steps_since_search } = state;
+        supported_nodes.check(part.nodes.len())?;
+        (self.supported_nodes, self.setup.tolerances, self.steps_since_search) =
+            (supported_nodes, tolerances, steps_since_search);
+        self.pairing.resume(self.supported_nodes.planes(), &self.setup, pairing)?;
         self.states.resume(states)?;
         self.pairing.set_states(&self.states);
         self.surfaces.write_states(part, &self.states, self.setup.settings.formulation);
@@ -178,10 +179,10 @@ impl ContactState {
 
     /// Normals of the nodes in the present configuration.
     pub(super) fn find_normals(&mut self, part: &mut ModelPart) {
-        write_nodal_normals(part, &self.pairing, &self.holding);
+        write_nodal_normals(part, &self.pairing, &self.supported_nodes);
         self.states.take_normals(&self.pairing.normals, &part.nodes.current);
         if self.setup.settings.solver.feature_angle.is_some() {
-            let planes = self.holding.planes();
+            let planes = self.supported_nodes.planes();
             take_normals_of_masters(part, &mut self.states, &self.pairing, &|node| planes.contains_key(&node));
         }
     }
@@ -203,8 +204,8 @@ impl ContactState {
         self.states.set_slaves(self.pairing.slaves());
         let (all, multiplier) = (self.states.all(), self.setup.settings.formulation.multiplier);
         activation::clear_inactive(&mut part.slave_nodes, &mut self.states, multiplier, all);
-        self.pairing.find_normal_patches(self.holding.planes());
-        write_nodal_normals(part, &self.pairing, &self.holding);
+        self.pairing.find_normal_patches(self.supported_nodes.planes());
+        write_nodal_normals(part, &self.pairing, &self.supported_nodes);
         self.states.take_normals(&self.pairing.normals, &part.nodes.current);
     }
 
@@ -220,12 +221,12 @@ impl ContactState {
     }
 
     /// Writes pressures, slips and gaps as they are in the present configuration, with the set as it stands, and forgets them.
-    pub(super) fn show(&mut self, part: &mut ModelPart, set: &SetStage) {
-        let (states, resolution, overlaps) = (self.states.clone(), self.setup.resolution, self.pairing.overlaps());
+    pub(super) fn show(&mut self, part: &mut ModelPart, set: &ActiveSetUpdate) {
+        let (states, tolerances, overlaps) = (self.states.clone(), self.setup.tolerances, self.pairing.overlaps());
         self.integrate(part);
         set.find_tractions(part, &mut self.states, &self.setup);
         self.write_states(part);
-        (self.states, self.setup.resolution) = (states, resolution);
+        (self.states, self.setup.tolerances) = (states, tolerances);
         self.pairing.set_overlaps(&overlaps);
     }
 
@@ -256,7 +257,7 @@ impl ContactState {
                 slaves: self.pairing.slaves_of_pair(key),
                 master: self.pairing.master(key),
             });
-            let said = self.holding.hold(part, &mut self.states, self.setup.settings.formulation, facets);
+            let said = self.supported_nodes.constrain(part, &mut self.states, self.setup.settings.formulation, facets);
             self.messages.extend(said);
         }
     }
@@ -285,8 +286,8 @@ impl ContactState {
     pub(super) fn find_contact(&mut self, part: &mut ModelPart) -> Result<()> {
         self.clear_inactive(part);
         if self.setup.settings.mind_supports {
-            self.holding.begin_step(part, &self.pairing.interfaces);
-            self.pairing.find_normal_patches(self.holding.planes());
+            self.supported_nodes.begin_step(part, &self.pairing.interfaces);
+            self.pairing.find_normal_patches(self.supported_nodes.planes());
         }
         self.find_normals(part);
         self.steps_since_search = self.steps_since_search.saturating_add(1);
@@ -302,9 +303,9 @@ impl ContactState {
         let settings = &self.setup.settings;
         let start = match settings.search.check {
             GapCheck::DirectCheck => ActivationCriterion::Touching(&self.pairing.touching),
-            GapCheck::NoCheck => ActivationCriterion::Reach(f64::MAX),
+            GapCheck::NoCheck => ActivationCriterion::GapBelow(f64::MAX),
             GapCheck::CheckMapping if settings.simple_search => ActivationCriterion::ShareOfMeshSize,
-            GapCheck::CheckMapping => ActivationCriterion::Reach(self.setup.near()),
+            GapCheck::CheckMapping => ActivationCriterion::GapBelow(self.setup.near()),
         };
         let rule = self.setup.parameters.slip_rule;
         activation::start(&part.nodes, &mut self.states, start, rule);
@@ -312,7 +313,7 @@ impl ContactState {
             forced_points::hold_open_interfaces(
                 &mut self.states,
                 &self.pairing.slaves_by_interface(),
-                self.setup.resolution,
+                self.setup.tolerances,
             );
         }
         friction::start_in_stick(part.info.step, &mut self.states, rule, &settings.friction);
@@ -323,7 +324,7 @@ impl ContactState {
 }
 
 /// Writes the column NORMAL of all nodes of the interfaces, masters too.
-fn write_nodal_normals(part: &mut ModelPart, pairing: &Pairing, holding: &Holding) {
+fn write_nodal_normals(part: &mut ModelPart, pairing: &Pairing, supported_nodes: &SupportedNodes) {
     let all = NormalPatches::new(part.nodes.len(), &pairing.interfaces, pairing.normals.weights());
-    all.on_planes(holding.planes().clone()).write(part);
+    all.on_planes(supported_nodes.planes().clone()).write(part);
 }

@@ -1,12 +1,12 @@
 //! The loops around Newton's iteration: the checks of a converged state, and their changes before the next iteration.
 
 use serde::{Deserialize, Serialize};
-use zelus_core::entities::Outer;
+use zelus_core::entities::OuterLoop;
 use zelus_core::model::ModelPart;
-use zelus_core::{Carrier, Result};
+use zelus_core::{Result, StateMapper};
 
 use super::contact_state::ContactState;
-use crate::active_set::{Rules, SetStage};
+use crate::active_set::{ActiveSetUpdate, Rules};
 use crate::adaptation::{FrictionRamp, PenaltyRamp, Uzawa};
 use crate::pairs::Multiplier;
 use crate::safeguards::{ContactWork, PenetrationCheck, StepSearch, coarse_impact, pierced, too_deep};
@@ -44,9 +44,9 @@ impl OuterLoops {
         self.work.check(nodes)
     }
 
-    /// See [`State::carry`](zelus_core::State::carry).
-    pub(super) fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.work.carry(carrier);
+    /// See [`State::remap`](zelus_core::State::remap).
+    pub(super) fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        self.work.remap(mapper);
     }
 
     /// Step start, before contact is searched.
@@ -74,24 +74,24 @@ impl OuterLoops {
         &mut self,
         part: &mut ModelPart,
         contact: &mut ContactState,
-        set: &mut SetStage,
-    ) -> Result<Outer> {
+        set: &mut ActiveSetUpdate,
+    ) -> Result<OuterLoop> {
         let (formulation, scale_factor) = (contact.setup.settings.formulation, contact.setup.parameters.scale_factor);
         let solver = contact.setup.settings.solver;
         if formulation.updated {
             let outer =
                 self.uzawa.update(&part.slave_nodes, &mut contact.states, scale_factor, contact.setup.settings.uzawa);
-            if outer != Outer::Done {
+            if outer != OuterLoop::Done {
                 return Ok(outer);
             }
         }
         if contact.setup.ramps_penalty()
-            && self.penalty_ramp.after_convergence(&part.info, &mut contact.states) == Outer::Again
+            && self.penalty_ramp.after_convergence(&part.info, &mut contact.states) == OuterLoop::Continue
         {
-            return Ok(Outer::Again);
+            return Ok(OuterLoop::Continue);
         }
         let settled = set.settle(part, &mut contact.states, &contact.setup);
-        if settled != Outer::Done {
+        if settled != OuterLoop::Done {
             return Ok(settled);
         }
         let (pairs, searched) = ((&contact.pairing, &contact.states), contact.is_searched());
@@ -103,37 +103,37 @@ impl OuterLoops {
             set.update(part, &mut contact.states, &contact.setup, &mut contact.messages);
             set.find_tangents(part, &mut contact.states, &contact.setup);
         }
-        if outer != Outer::Done {
+        if outer != OuterLoop::Done {
             return Ok(outer);
         }
-        let (law, resolution) = (contact.setup.settings.friction.law, contact.setup.resolution);
-        if self.friction_ramp.after_convergence(part, &mut contact.states, law, resolution) == Outer::Again {
+        let (law, tolerances) = (contact.setup.settings.friction.law, contact.setup.tolerances);
+        if self.friction_ramp.after_convergence(part, &mut contact.states, law, tolerances) == OuterLoop::Continue {
             set.forget_sets();
             set.find_tangents(part, &mut contact.states, &contact.setup);
-            return Ok(Outer::Again);
+            return Ok(OuterLoop::Continue);
         }
         // With Nitsche's method a penetrating point is always active, so this check is skipped.
         if !contact.setup.by_points()
             && let Some(why) = Rules::of(&contact.setup).passed_through(part, &contact.states)
         {
-            return Ok(Outer::Failed(why));
+            return Ok(OuterLoop::Failed(why));
         }
-        if let Some(why) = too_deep(part, &contact.states, solver.largest_penetration, contact.setup.resolution.length)
+        if let Some(why) = too_deep(part, &contact.states, solver.largest_penetration, contact.setup.tolerances.length)
         {
-            return Ok(Outer::Failed(why));
+            return Ok(OuterLoop::Failed(why));
         }
         if let Some(why) =
             self.penetration_check
                 .why(part, &contact.pairing.interfaces, solver.largest_penetration, |at| contact.in_contact(at))
         {
-            return Ok(Outer::Failed(why));
+            return Ok(OuterLoop::Failed(why));
         }
         // For bodies in motion the energy error of contact decides instead.
         if !contact.setup.parameters.dynamic
             && solver.largest_penetration > 0.0
             && let Some(why) = pierced(part, &contact.pairing, &contact.states)
         {
-            return Ok(Outer::Failed(why));
+            return Ok(OuterLoop::Failed(why));
         }
         if solver.ensures_contact && contact.states.count_active() == 0 {
             return Err(zelus_core::Error::NotConverged(
@@ -144,7 +144,7 @@ impl OuterLoops {
         if contact.setup.parameters.dynamic {
             self.work.of_step(part, &contact.pairing.as_entities())?;
             if let Some(why) = self.work.too_much(part, &solver) {
-                return Ok(Outer::Failed(why));
+                return Ok(OuterLoop::Failed(why));
             }
         }
         let start = (&*self.start_gaps, &mut self.impact_error);
@@ -156,7 +156,7 @@ impl OuterLoops {
         self.impact_error = 0.0;
         if contact.setup.parameters.dynamic {
             let formulation = contact.setup.settings.formulation;
-            let stores = formulation.compliant || matches!(formulation.multiplier, Multiplier::None);
+            let stores = formulation.regularised || matches!(formulation.multiplier, Multiplier::None);
             let conserves = !stores && !formulation.frictional();
             contact.messages.extend(self.work.accept(part, conserves));
         }

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use zelus_core::entities::{LocalSystems, LocalUnknown, Want, require_kind};
+use zelus_core::entities::{LocalSystems, LocalUnknown, Request, require_kind};
 use zelus_core::geometry::{Shape, reversed};
 use zelus_core::model::flags::ACTIVE;
-use zelus_core::model::{ModelPart, Nodes, Role};
+use zelus_core::model::{EntityRole, ModelPart, Nodes};
 use zelus_core::vector3::add;
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
@@ -17,11 +17,11 @@ use crate::law::{Augmentation, COULOMB, Margin, Nitsche, NormalVariation, SlipRu
 use crate::mortar::tests::Noise;
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::{
-    ContactBlock, Formulation, Integral, Pair, PairKey, PairRequest, Present, condition_name, find_formulation,
-    group_by_shapes, group_by_surroundings,
+    ContactBlock, Formulation, Integral, IntegrationState, Pair, PairKey, PairRequest, condition_name,
+    find_formulation, group_by_shapes, group_by_surroundings,
 };
-use crate::resolution::Resolution;
 use crate::slave_nodes::{SlaveStates, SlaveTable};
+use crate::tolerances::Tolerances;
 use crate::variables::{DYNAMIC_FACTOR, FRICTION_COEFFICIENT, INITIAL_PENALTY, NODAL_AREA};
 
 /// Facets of two sides that overlap in several pairs a node, and all that their forces depend on.
@@ -143,7 +143,7 @@ impl Contact {
             levels_back: 1,
             normal_variation: NormalVariation::Exact,
             augmentation,
-            compliant: formulation.compliant,
+            regularised: formulation.regularised,
             dynamic: false,
             friction_law: &COULOMB,
             slip_rule: SlipRule::Bounded(Margin::default()),
@@ -172,7 +172,8 @@ impl Contact {
         for ((slave, master), (pairs, nodes)) in
             group_by_shapes(std::slice::from_ref(&self.interface), pairs, |p| p.key)
         {
-            let entry = require_kind(Role::Condition, &condition_name(formulation.condition, slave, master)).unwrap();
+            let entry =
+                require_kind(EntityRole::Condition, &condition_name(formulation.condition, slave, master)).unwrap();
             for (around, (pairs, nodes)) in group_by_surroundings(&|pair: &Pair| self.around(pair.key), pairs, &nodes) {
                 let (patches, parameters) = (self.normals.clone(), self.parameters.clone());
                 let slaves: Vec<SlaveIndex> = pairs.iter().flat_map(|pair| self.slaves_of(pair.key)).copied().collect();
@@ -196,7 +197,7 @@ impl Contact {
             }
         }
         self.follow();
-        let present = Present { view: &self.part.view(), states: &self.states, own: &|_| true };
+        let present = IntegrationState { view: &self.part.view(), states: &self.states, own: &|_| true };
         self.blocks.iter_mut().for_each(|block| block.keep_operators(present));
     }
 
@@ -237,7 +238,8 @@ impl Contact {
         }
         self.follow();
         for block in &mut self.blocks {
-            let integrals = block.integrate(Present { view: &self.part.view(), states: &self.states, own: &|_| true });
+            let integrals =
+                block.integrate(IntegrationState { view: &self.part.view(), states: &self.states, own: &|_| true });
             block.pairs_mut().iter_mut().zip(integrals).for_each(|(pair, integral)| pair.area = integral.area);
         }
         // Areas stay those of this state: they weigh slips in the direction of sliding only.
@@ -283,7 +285,7 @@ impl Contact {
                 }
             }
             let (formulation, parameters) = (self.formulation, self.parameters.clone());
-            let rules = Rules { formulation, parameters: &parameters, resolution: Resolution::default() };
+            let rules = Rules { formulation, parameters: &parameters, tolerances: Tolerances::default() };
             find_tangents(&self.part, &mut self.states, rules, false, &mut BTreeMap::new());
         }
         let states = Arc::new(self.states.clone());
@@ -291,15 +293,15 @@ impl Contact {
     }
 
     fn integrals(&self, block: &dyn ContactBlock) -> Vec<Integral> {
-        block.integrate(Present { view: &self.part.view(), states: &self.states, own: &|_| true })
+        block.integrate(IntegrationState { view: &self.part.view(), states: &self.states, own: &|_| true })
     }
 
     /// Visits the entries of residual and tangent, the latter with its column.
-    fn each(&self, want: Want, mut visit: impl FnMut((u32, LocalUnknown), Option<(u32, LocalUnknown)>, f64)) {
+    fn each(&self, request: Request, mut visit: impl FnMut((u32, LocalUnknown), Option<(u32, LocalUnknown)>, f64)) {
         for block in &self.blocks {
             let mut out = LocalSystems::default();
-            out.reset(block.len(), block.unknowns().len(), want);
-            block.local_systems(&self.part.view(), 0..block.len(), want, &mut out).unwrap();
+            out.reset(block.len(), block.unknowns().len(), request);
+            block.local_systems(&self.part.view(), 0..block.len(), request, &mut out).unwrap();
             for at in 0..block.len() {
                 let nodes = block.nodes(at).to_vec();
                 let place = |u: &LocalUnknown| (nodes[u.node as usize], LocalUnknown::of_node(0, u.variable));
@@ -307,7 +309,7 @@ impl Contact {
                 let (lhs, rhs) = out.entity(at);
                 for (i, &row) in rows.iter().enumerate() {
                     visit(row, None, rhs[i]);
-                    if want == Want::Both {
+                    if request == Request::Both {
                         (0..rows.len()).for_each(|j| visit(row, Some(rows[j]), lhs[i * rows.len() + j]));
                     }
                 }
@@ -326,7 +328,7 @@ fn check(formulation: &str, of: (usize, bool), augmentation: Augmentation) {
     let space = of.0;
     let mut contact = Contact::new(find_formulation(formulation).unwrap(), of, augmentation);
     let (mut tangent, mut forces) = (BTreeMap::<(Place, Place), f64>::new(), BTreeMap::<Place, f64>::new());
-    contact.each(Want::Both, |row, column, value| match column {
+    contact.each(Request::Both, |row, column, value| match column {
         Some(column) => *tangent.entry((place(row), place(column))).or_default() += value,
         None => *forces.entry(place(row)).or_default() += value,
     });
@@ -338,7 +340,7 @@ fn check(formulation: &str, of: (usize, bool), augmentation: Augmentation) {
             for (step, sign) in [(1e-6, 1.0), (-2e-6, -1.0)] {
                 contact.part.nodes.history.values_mut(&DISPLACEMENT, 0)[3 * node + c] += step;
                 contact.follow();
-                contact.each(Want::Residual, |row, _, value| {
+                contact.each(Request::Residual, |row, _, value| {
                     *slopes.entry(place(row)).or_default() -= sign * value / 2e-6;
                 });
             }

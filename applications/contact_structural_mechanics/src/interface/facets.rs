@@ -68,7 +68,7 @@ pub fn check_nodes(count: usize, mut nodes: impl Iterator<Item = u32>) -> Result
 
 impl Interface {
     /// Nodes that may carry multipliers, ascending: those of slaves, or all of an open interface.
-    pub fn carriers(&self) -> Vec<u32> {
+    pub fn dof_owners(&self) -> Vec<u32> {
         if self.open { self.nodes.clone() } else { self.nodes_of(Roles::Slave) }
     }
 
@@ -485,11 +485,11 @@ fn boundary_faces(part: &ModelPart, wanted: &[bool]) -> Faces {
 mod tests {
     use super::*;
     use zelus_core::entities::require_kind;
-    use zelus_core::model::{Nodes, Role};
+    use zelus_core::model::{EntityRole, Nodes};
 
     /// The skin of one element in a space of `space` dimensions.
     fn skin(name: &str, space: usize) -> Result<Vec<Interface>> {
-        let kind = require_kind(Role::Element, name).unwrap();
+        let kind = require_kind(EntityRole::Element, name).unwrap();
         let cell = kind.cell.unwrap().cell();
         let mut part = ModelPart::new("Body");
         part.info.domain_size = space;

@@ -30,7 +30,7 @@ const AXIS: [f64; 3] = [0.0, 0.0, 1.0];
 
 /// A facet as one of its nodes sees it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Corner {
+pub struct FacetCorner {
     /// Interface and facet, by their positions.
     pub facet: [u32; 2],
     /// Where the terms of its edges a and b stand; none for the edge that a line has not.
@@ -78,7 +78,7 @@ pub struct NormalPatches {
     nodes: Vec<u32>,
     /// First corner of each item, and the end.
     starts: Vec<u32>,
-    corners: Vec<Corner>,
+    corners: Vec<FacetCorner>,
     terms: Vec<Term>,
     weights: NodalNormals,
     /// Components that the normals of nodes on planes of symmetry lack.
@@ -120,7 +120,7 @@ impl NormalPatches {
             let own = facet.nodes.iter().enumerate().filter_map(|(local, &node)| item(i, f, local, node));
             own.for_each(|item| met[item as usize] = true);
         }
-        let (mut at_items, mut terms): (Vec<(u32, Corner)>, Vec<Term>) = Default::default();
+        let (mut at_items, mut terms): (Vec<(u32, FacetCorner)>, Vec<Term>) = Default::default();
         let mut keep = |edge: Vec<Term>| {
             let first = terms.len() as u32;
             terms.extend(edge);
@@ -131,7 +131,7 @@ impl NormalPatches {
                 let Some(item) = item(i, f, local, node) else { continue };
                 if facet.role != Roles::Open || !met[item as usize] {
                     let edges = edges(facet, local).map(|edge| edge.map(&mut keep));
-                    at_items.push((item, Corner { facet: [i, f], edges }));
+                    at_items.push((item, FacetCorner { facet: [i, f], edges }));
                 }
             }
         }
@@ -160,7 +160,7 @@ impl NormalPatches {
     }
 
     /// The facets of an item.
-    pub fn corners(&self, item: u32) -> &[Corner] {
+    pub fn corners(&self, item: u32) -> &[FacetCorner] {
         match self.starts.get(item as usize..item as usize + 2) {
             Some(&[from, to]) => &self.corners[from as usize..to as usize],
             _ => &[],
@@ -178,7 +178,7 @@ impl NormalPatches {
     }
 
     /// The edges a and b of a corner at a node.
-    fn edges(&self, corner: &Corner, node: u32, places: &[[f64; 3]]) -> [[f64; 3]; 2] {
+    fn edges(&self, corner: &FacetCorner, node: u32, places: &[[f64; 3]]) -> [[f64; 3]; 2] {
         corner.edges.map(|edge| {
             let Some(edge) = edge else { return AXIS };
             let mut sum = [0.0; 3];
@@ -191,7 +191,7 @@ impl NormalPatches {
     }
 
     /// v of a corner at a node; `None` without area.
-    fn normal(&self, corner: &Corner, node: u32, places: &[[f64; 3]]) -> Option<[f64; 3]> {
+    fn normal(&self, corner: &FacetCorner, node: u32, places: &[[f64; 3]]) -> Option<[f64; 3]> {
         let [a, b] = self.edges(corner, node, places);
         let across = cross(a, b);
         let size = match self.weights {
@@ -204,7 +204,7 @@ impl NormalPatches {
     /// Visits the other ends of a corner's edges with ∂v/∂x; the node itself moves against them.
     fn corner_variation(
         &self,
-        corner: &Corner,
+        corner: &FacetCorner,
         node: u32,
         places: &[[f64; 3]],
         mut visit: impl FnMut(u32, [[f64; 3]; 3]),
@@ -245,7 +245,7 @@ impl NormalPatches {
         &self,
         item: u32,
         places: &[[f64; 3]],
-        knows: &dyn Fn(&Corner) -> bool,
+        knows: &dyn Fn(&FacetCorner) -> bool,
         visit: &mut dyn FnMut(u32, [[f64; 3]; 3]),
     ) {
         let (node, sum) = (self.nodes[item as usize], self.sum(item, places));

@@ -8,7 +8,7 @@
 //! - slip: k g̃ along m, the free part of the normal, and the law of friction along e, the free tangent; e and m are unit
 //!   vectors, and e is at right angles to m and n.
 
-use super::node_state::{Held, NodeState};
+use super::node_state::{MultiplierConstraint, NodeState};
 use super::{Multiplier, SlaveNode};
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{dot, normalised, scale, sub};
@@ -17,23 +17,23 @@ use zelus_core::vector3::{dot, normalised, scale, sub};
 const LEAST_FREE: f64 = 1e-2;
 
 /// The free part of a unit normal, as a unit vector; zero if there is next to none.
-pub fn free_normal<T: Real>(normal: [T; 3], held: [Held; 3]) -> [T; 3] {
-    let free = free(normal, held);
+pub fn free_normal<T: Real>(normal: [T; 3], constraints: [MultiplierConstraint; 3]) -> [T; 3] {
+    let free = free(normal, constraints);
     if dot(free, free).value() < LEAST_FREE { [T::zero(); 3] } else { normalised(free) }
 }
 
 /// The part of a vector along which a node that stays in contact can slide.
-pub fn along_free_tangents<T: Real>(vector: [T; 3], normal: [T; 3], held: [Held; 3]) -> [T; 3] {
-    let (vector, normal) = (free(vector, held), free_normal(normal, held));
+pub fn along_free_tangents<T: Real>(vector: [T; 3], normal: [T; 3], constraints: [MultiplierConstraint; 3]) -> [T; 3] {
+    let (vector, normal) = (free(vector, constraints), free_normal(normal, constraints));
     sub(vector, scale(normal, dot(vector, normal)))
 }
 
-fn free<T: Real>(vector: [T; 3], held: [Held; 3]) -> [T; 3] {
-    std::array::from_fn(|c| if held[c].is_still() { T::zero() } else { vector[c] })
+fn free<T: Real>(vector: [T; 3], constraints: [MultiplierConstraint; 3]) -> [T; 3] {
+    std::array::from_fn(|c| if constraints[c].is_still() { T::zero() } else { vector[c] })
 }
 
 /// Share with which a multiplier whose facet has no free node is kept, beside facets that it can follow.
-const NO_ONE_TO_FOLLOW: f64 = 1e-6;
+const WITHOUT_FREE_NODE: f64 = 1e-6;
 
 /// Replaces equations of constrained components, each with the weight k² A/c of its node. `rows` are those of the law.
 pub fn constrain<T: Real>(
@@ -44,28 +44,30 @@ pub fn constrain<T: Real>(
     nodes: &[SlaveNode],
 ) {
     for (j, node) in nodes.iter().enumerate() {
-        let held = node.held;
-        if held == [Held::Free; 3] || !node.state.is_active() {
+        let constraints = node.constraints;
+        if constraints == [MultiplierConstraint::Free; 3] || !node.state.is_active() {
             continue;
         }
         let row = rows[j];
         if matches!(kind, Multiplier::Vector(_))
             && node.state == NodeState::Slip
-            && held.iter().any(|held| held.is_still())
+            && constraints.iter().any(|constraint| constraint.is_still())
         {
-            let (n, m) = (normals[j], free_normal(normals[j], held));
-            let tangent = along_free_tangents(row, n, held);
+            let (n, m) = (normals[j], free_normal(normals[j], constraints));
+            let tangent = along_free_tangents(row, n, constraints);
             let gap = dot(n, row);
             rows[j] = std::array::from_fn(|c| tangent[c] + m[c] * gap);
         }
         for c in 0..3 {
             let own = multipliers[j][c];
-            rows[j][c] = match held[c] {
-                Held::Free => continue,
-                Held::KeptInStick if node.state == NodeState::Slip => continue,
-                Held::Kept | Held::KeptInStick => (T::constant(own.value()) - own) * node.held_weight,
-                Held::Follows => {
-                    let free = (0..nodes.len()).filter(|&k| nodes[k].held[c] == Held::Free);
+            rows[j][c] = match constraints[c] {
+                MultiplierConstraint::Free => continue,
+                MultiplierConstraint::ConstantInStick if node.state == NodeState::Slip => continue,
+                MultiplierConstraint::Constant | MultiplierConstraint::ConstantInStick => {
+                    (T::constant(own.value()) - own) * node.constraint_weight
+                }
+                MultiplierConstraint::Crosspoint => {
+                    let free = (0..nodes.len()).filter(|&k| nodes[k].constraints[c] == MultiplierConstraint::Free);
                     let (mut sum, mut count, mut any) = (T::zero(), 0.0, false);
                     for k in free {
                         any = true;
@@ -75,9 +77,9 @@ pub fn constrain<T: Real>(
                         }
                     }
                     match (any, count > 0.0) {
-                        (false, _) => (T::constant(own.value()) - own) * (NO_ONE_TO_FOLLOW * node.held_weight),
-                        (true, false) => -own * node.held_weight,
-                        (true, true) => (sum / count - own) * node.held_weight,
+                        (false, _) => (T::constant(own.value()) - own) * (WITHOUT_FREE_NODE * node.constraint_weight),
+                        (true, false) => -own * node.constraint_weight,
+                        (true, true) => (sum / count - own) * node.constraint_weight,
                     }
                 }
             };
@@ -92,13 +94,16 @@ mod tests {
     #[test]
     fn nodes_slide_along_what_is_free() {
         let slope = [0.6, 0.8, 0.0];
-        let wall = [Held::Follows, Held::Free, Held::Free];
+        let wall = [MultiplierConstraint::Crosspoint, MultiplierConstraint::Free, MultiplierConstraint::Free];
         // In the plane a node in contact whose component x is held cannot slide; in space it slides along z.
         let slides = along_free_tangents([0.8, -0.6, 2.0], slope, wall);
         assert!((0..3).all(|c| (slides[c] - [0.0, 0.0, 2.0][c]).abs() < 1e-15), "{slides:?}");
         assert_eq!(free_normal(slope, wall), [0.0, 1.0, 0.0]);
         // A node that moves with its supports is not restricted, and a clamp leaves no free normal.
-        assert_eq!(along_free_tangents([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [Held::KeptInStick; 3]), [1.0, 0.0, 0.0]);
-        assert_eq!(free_normal(slope, [Held::Follows; 3]), [0.0; 3]);
+        assert_eq!(
+            along_free_tangents([1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [MultiplierConstraint::ConstantInStick; 3]),
+            [1.0, 0.0, 0.0]
+        );
+        assert_eq!(free_normal(slope, [MultiplierConstraint::Crosspoint; 3]), [0.0; 3]);
     }
 }

@@ -92,7 +92,7 @@ pub struct NodeOfPoints {
     /// Limit of the tangential traction.
     pub friction: Bound,
     /// r° of the last accepted state (force per area).
-    pub carried: [f64; 3],
+    pub history_traction: [f64; 3],
     /// 1 where points are in contact whatever their pressure, until the next solve; else 0.
     pub forced_active: f64,
     /// 1 where points in contact stick whatever their traction, until the next solve; else 0.
@@ -109,7 +109,7 @@ pub struct PointForces<T: Real> {
     /// ∫ L f: area times traction of the slave nodes, with their share of each point ([`nodal_shares`]).
     pub traction: Nodal<[f64; 3]>,
     /// ∫ L (τ − t + σ n) over the points in contact, with friction.
-    pub carried: Nodal<[T; 3]>,
+    pub history_traction: Nodal<[T; 3]>,
     /// Factor of changes of the tractions at the inner points (a length times an area).
     pub by_traction: Nodal<[T; 3]>,
 }
@@ -132,7 +132,7 @@ impl Nitsche {
             slave: shape.nodal(|_| zero),
             master: pair.master.map(|_| zero),
             traction: shape.nodal(|_| [0.0; 3]),
-            carried: shape.nodal(|_| zero),
+            history_traction: shape.nodal(|_| zero),
             by_traction: shape.nodal(|_| zero),
         };
         let origin = value(pair.slave[0]);
@@ -174,20 +174,20 @@ impl Nitsche {
                     let before = jump_before(&point.slave, &point.master, last);
                     let slip = tangential(sub(rotation.apply(before), jump), normal);
                     let weights = point.slave.map(T::value);
-                    let mut carried = zero;
+                    let mut history_traction = zero;
                     for (node, n) in nodes.iter().zip(point.slave.iter()) {
-                        (0..3).for_each(|c| carried[c].add_scaled(*n, node.carried[c]));
+                        (0..3).for_each(|c| history_traction[c].add_scaled(*n, node.history_traction[c]));
                     }
-                    let carried = tangential(rotation.apply(carried), normal);
+                    let history_traction = tangential(rotation.apply(history_traction), normal);
                     let along = sub(traction, scale(normal, stress));
-                    let trial = add(add(along, carried), scale(slip, T::constant(gamma * ratio)));
+                    let trial = add(add(along, history_traction), scale(slip, T::constant(gamma * ratio)));
                     let sticks = forced || share(|node| node.forced_stick);
                     let friction = limited(trial, pressure, mean_bound(nodes, &weights), sticks);
                     force = add(force, friction);
                     let apart = sub(friction, along);
                     for k in 0..shape.nodes {
                         let weight = shares[k] * point.weight;
-                        (0..3).for_each(|c| out.carried[k][c].add_product(weight, apart[c]));
+                        (0..3).for_each(|c| out.history_traction[k][c].add_product(weight, apart[c]));
                     }
                 }
             }

@@ -37,22 +37,22 @@ impl NodeState {
 
 /// Constraint on a component of a multiplier.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Held {
+pub enum MultiplierConstraint {
     /// It has an equation of its own.
     #[default]
     Free,
     /// It keeps its value.
-    Kept,
+    Constant,
     /// It is the mean of those of the facet's nodes that are in contact and free.
-    Follows,
+    Crosspoint,
     /// It keeps its value while the node sticks: supports move the opposite master.
-    KeptInStick,
+    ConstantInStick,
 }
 
-impl Held {
+impl MultiplierConstraint {
     /// Whether both sides stand still along it.
     pub fn is_still(self) -> bool {
-        matches!(self, Self::Kept | Self::Follows)
+        matches!(self, Self::Constant | Self::Crosspoint)
     }
 }
 
@@ -61,7 +61,7 @@ impl Held {
 /// Zero where the direction is a sign, as in the plane. It enters the tangent only; without it a body that slides is free
 /// across its direction.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Turning {
+pub struct DirectionRotation {
     /// κ b/|q̂|, with the sum b of the bounds that the pairs of the node state: slip across τ, in shares of the slip that stick
     /// would forbid. By the penalty method 1/|q|: turning by trial traction.
     pub by_slip: f64,

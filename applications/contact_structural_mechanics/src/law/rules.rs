@@ -5,12 +5,12 @@
 //! bound that the law of friction sets under p̂. A sticking node slides when its traction k P λ is more than the bound; κ c s counts
 //! only for nodes that enter. A sliding node, which is at the bound by its own equation, sticks again when its slip has turned against
 //! its traction: then q̂ is below the bound, however small κ c s is. So the states of a solution do not depend on κ. The smallest
-//! numbers that decide are those of [`crate::resolution`].
+//! numbers that decide are those of [`crate::tolerances`].
 
 use super::friction_law::Bound;
 use super::node_state::NodeState;
 use crate::mortar::tangential;
-use crate::resolution::{Resolution, is_more};
+use crate::tolerances::{Tolerances, is_more};
 use zelus_core::vector3::{add, dot, norm, scale};
 
 /// Decides for a frictionless node, whose active state is [`NodeState::Slip`].
@@ -96,7 +96,7 @@ pub struct SlaveNumbers {
     /// Ratio κ of tangential to normal stiffness.
     pub tangent_factor: f64,
     /// Smallest lengths and tractions that decide; gaps and slips below are zero already.
-    pub resolution: Resolution,
+    pub tolerances: Tolerances,
 }
 
 impl SlaveNumbers {
@@ -116,11 +116,11 @@ impl SlaveNumbers {
 
     /// Whether a node without contact is in the master by more than a state may leave: `allowed` is a traction.
     pub fn has_passed_through(&self, allowed: f64) -> bool {
-        !self.state.is_active() && -self.stiffness * self.gap > allowed.max(self.resolution.traction)
+        !self.state.is_active() && -self.stiffness * self.gap > allowed.max(self.tolerances.traction)
     }
 
     fn presses(&self, pressure: f64) -> bool {
-        self.resolution.exceeds(-pressure, 0.0, self.state.is_active())
+        self.tolerances.exceeds(-pressure, 0.0, self.state.is_active())
     }
 
     /// Whether supports move the sides along each other.
@@ -131,7 +131,7 @@ impl SlaveNumbers {
     /// Whether the slip of a sliding node is against the traction that should oppose it.
     fn has_turned(&self, bound: f64) -> bool {
         let back = -dot(self.tangent, self.slip);
-        back > self.resolution.length && back * self.stiffness > TURNED * bound
+        back > self.tolerances.length && back * self.stiffness > TURNED * bound
     }
 
     /// Trial traction k P λ + a κ c s.
@@ -207,7 +207,7 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
         }
         NodeState::Stick => {
             let q = node.trial(0.0);
-            (q, node.is_dragged() || node.resolution.exceeds(norm(q), bound, false))
+            (q, node.is_dragged() || node.tolerances.exceeds(norm(q), bound, false))
         }
         _ => {
             // A node that enters while it moves more along the surface than into it was not held: holding it at once would
@@ -215,7 +215,7 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
             let least = node.friction.coefficient.max(1.0) * node.gap.abs();
             let dragged = is_more(norm(node.slip), least);
             let q = node.trial(1.0);
-            (q, dragged || node.is_dragged() || node.resolution.exceeds(norm(q), bound, false))
+            (q, dragged || node.is_dragged() || node.tolerances.exceeds(norm(q), bound, false))
         }
     };
     let slips = rule == SlipRule::Pure || node.friction.is_smooth() || over;
@@ -223,7 +223,7 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     let entered = !node.state.is_active();
     let direction = if sliding && rule != SlipRule::Pure {
         node.tangent
-    } else if node.resolution.exceeds(node.scale_factor * norm(lambda_t), 0.0, false) {
+    } else if node.tolerances.exceeds(node.scale_factor * norm(lambda_t), 0.0, false) {
         lambda_t
     } else {
         q
@@ -272,7 +272,7 @@ pub fn penalty_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     let (bound, length) = (node.friction.at(pressure), norm(q));
     let sliding = node.state == NodeState::Slip;
     let turned = sliding && rule != SlipRule::Pure && dot(q, node.tangent) < 0.0;
-    let over = !turned && node.resolution.exceeds(length, bound, sliding);
+    let over = !turned && node.tolerances.exceeds(length, bound, sliding);
     let slips = rule == SlipRule::Pure || node.friction.is_smooth() || over;
     let entered = !node.state.is_active();
     Decision {
@@ -345,7 +345,7 @@ mod tests {
             friction: Bound { coefficient: 0.3, threshold: 0.0 },
             scale_factor: 4.0,
             tangent_factor: 0.5,
-            resolution: Resolution::of(1.0, 4.0, 0.0),
+            tolerances: Tolerances::of(1.0, 4.0, 0.0),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Constants of a slave node during an assembly.
 
 use super::friction_law::Bound;
-use super::node_state::{Held, NodeState, Turning};
+use super::node_state::{DirectionRotation, MultiplierConstraint, NodeState};
 
 /// Constants of a slave node during an assembly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,7 +13,7 @@ pub struct SlaveNode {
     /// 1/ε of regularised formulations, penetration by pressure; 0 of all others.
     pub compliance: f64,
     /// Uzawa pressure p° of regularised formulations, compression negative; 0 without an outer loop.
-    pub kept: f64,
+    pub uzawa_pressure: f64,
     /// c > 0: stiffness by length, for rows that state tractions beside others that state gaps and slips.
     pub stiffness: f64,
     /// A > 0: the area that this pair has of the node, or all pairs where they augment; constant in the tangent.
@@ -25,13 +25,13 @@ pub struct SlaveNode {
     /// Unit tangent τ: the direction of sliding.
     pub tangent: [f64; 3],
     /// Derivative of that direction by the unknowns.
-    pub turning: Turning,
+    pub rotation: DirectionRotation,
     /// Constraint on each component of its multiplier; of a scalar one the first.
-    pub held: [Held; 3],
+    pub constraints: [MultiplierConstraint; 3],
     /// k² A/c: the weight of the equations of constrained components.
-    pub held_weight: f64,
+    pub constraint_weight: f64,
     /// Tangential traction t° of the last accepted state, where a law has a history traction (force per area).
-    pub carried: [f64; 3],
+    pub history_traction: [f64; 3],
     /// Traction of all pairs of the node, where a law computes it before its pairs (force per area).
     pub traction: [f64; 3],
 }

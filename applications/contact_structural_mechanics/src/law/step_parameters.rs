@@ -67,7 +67,7 @@ pub struct StepParameters {
     /// Where gaps augment the forces of augmented Lagrangians.
     pub augmentation: Augmentation,
     /// Whether contact is regularised: gap and slip have an elastic part, traction over penalty.
-    pub compliant: bool,
+    pub regularised: bool,
     /// Whether the step has inertia, so that friction must make no energy.
     pub dynamic: bool,
     /// Nitsche's method, of formulations whose tractions are those of bodies.

@@ -23,8 +23,8 @@ use zelus_core::vector3::{add, constant, dot, scale, sub, value};
 
 use crate::law::rules::{self, Decision, SlaveNumbers, SlipRule};
 use crate::law::{
-    Augmentation, Multiplier, NodeForces, NodeInputs, NodeLaw, NodeState, SlaveNode, SlipMeasure, StepParameters,
-    Turning,
+    Augmentation, DirectionRotation, Multiplier, NodeForces, NodeInputs, NodeLaw, NodeState, SlaveNode, SlipMeasure,
+    StepParameters,
 };
 use crate::mortar::{OperatorThreshold, tangential};
 use crate::pairs::{Formulation, Friction};
@@ -43,7 +43,7 @@ pub struct AlmFrictional {
     /// Where gap and slip augment the force.
     pub augmentation: Augmentation,
     /// Whether contact is regularised by the nodes' [`SlaveNode::compliance`].
-    pub compliant: bool,
+    pub regularised: bool,
     /// Whether bodies have inertia, so that friction must make no energy.
     pub dynamic: bool,
 }
@@ -51,7 +51,7 @@ pub struct AlmFrictional {
 impl AlmFrictional {
     /// Gap and slip without their elastic parts.
     fn inelastic<T: Real>(&self, node: &SlaveNode, inputs: &NodeInputs<T>) -> (T, [T; 3]) {
-        if !self.compliant {
+        if !self.regularised {
             return (inputs.gap, inputs.slip);
         }
         let traction = scale(inputs.multiplier, T::constant(self.scale_factor));
@@ -81,13 +81,13 @@ impl NodeLaw for AlmFrictional {
             tangent_factor: parameters.tangent_factor,
             operator_threshold: parameters.operator_threshold,
             augmentation: parameters.augmentation,
-            compliant: parameters.compliant,
+            regularised: parameters.regularised,
             dynamic: parameters.dynamic,
         }
     }
 
     fn slip(&self) -> SlipMeasure {
-        if self.compliant || (self.dynamic && self.augmentation == Augmentation::Node) {
+        if self.regularised || (self.dynamic && self.augmentation == Augmentation::Node) {
             SlipMeasure::Rotated
         } else {
             SlipMeasure::OfOperators(self.operator_threshold)
@@ -95,12 +95,12 @@ impl NodeLaw for AlmFrictional {
     }
 
     fn has_history(&self) -> bool {
-        self.compliant
+        self.regularised
     }
 
     fn weighted_trial(&self, node: &SlaveNode, inputs: &NodeInputs<f64>) -> Option<[f64; 3]> {
         let elastic = scale(inputs.slip, self.tangent_factor * node.penalty);
-        self.compliant.then(|| add(scale(inputs.history, inputs.area), elastic))
+        self.regularised.then(|| add(scale(inputs.history, inputs.area), elastic))
     }
 
     fn decide(node: &SlaveNumbers, rule: SlipRule) -> Decision {
@@ -126,16 +126,16 @@ impl NodeLaw for AlmFrictional {
             NodeState::Slip => {
                 let bound = node.friction.at(lambda_n * k + augmentation);
                 let mut q = node.tangent.map(|t| bound * t);
-                let mut turning = [T::zero(); 3];
-                let Turning { by_slip, by_multiplier } = node.turning;
+                let mut rotation = [T::zero(); 3];
+                let DirectionRotation { by_slip, by_multiplier } = node.rotation;
                 if by_slip != 0.0 || by_multiplier != 0.0 {
                     let by_multiplier = by_multiplier * bound.value();
                     (0..3).for_each(|c| q[c].add_scaled(across(lambda_t, node)[c], by_multiplier));
-                    turning = tangential(across(slip, node).map(|s| s * by_slip), n);
+                    rotation = tangential(across(slip, node).map(|s| s * by_slip), n);
                 }
                 let q = tangential(q, n);
                 let softness = node.area / node.stiffness;
-                let row = |c: usize| (n[c] * gap + turning[c] - (lambda_t[c] * k - q[c]) * softness) * k;
+                let row = |c: usize| (n[c] * gap + rotation[c] - (lambda_t[c] * k - q[c]) * softness) * k;
                 (std::array::from_fn(row), 0.0)
             }
             NodeState::Stick => (std::array::from_fn(|c| (n[c] * gap + slip[c]) * k), self.tangent_factor * penalty),

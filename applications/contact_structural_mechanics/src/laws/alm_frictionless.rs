@@ -37,8 +37,8 @@ impl NodeLaw for AlmFrictionless {
             return NodeForces { force: None, multiplier: [row, zero, zero] };
         }
         let pressure = (lambda * k + inputs.gap * self.augmentation.penalty(node)) * node.dynamic_factor;
-        let gives_way = lambda * k - node.kept;
-        let row = (inputs.gap - inputs.area * gives_way * node.compliance) * k;
+        let regularisation = lambda * k - node.uzawa_pressure;
+        let row = (inputs.gap - inputs.area * regularisation * node.compliance) * k;
         NodeForces { force: Some(scale(inputs.normal, pressure)), multiplier: [row, zero, zero] }
     }
 }

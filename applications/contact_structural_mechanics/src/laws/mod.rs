@@ -6,9 +6,9 @@
 pub mod alm_frictional;
 pub mod alm_frictionless;
 pub mod alm_frictionless_components;
-mod mesh_tying;
+mod mesh_tying_formulation;
 mod mpc;
-mod nitsche;
+mod nitsche_formulation;
 pub mod penalty_by_node;
 pub mod penalty_frictional;
 pub mod penalty_frictionless;

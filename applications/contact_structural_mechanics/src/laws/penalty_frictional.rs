@@ -31,7 +31,7 @@ impl PenaltyFrictional {
 
 /// The direction τ of a sliding node; its change with the trial traction of a pair is nothing but a derivative.
 fn direction<T: Real>(node: &SlaveNode, trial: [T; 3]) -> [T; 3] {
-    let change = trial.map(|q| (q - q.value()) * node.turning.by_slip);
+    let change = trial.map(|q| (q - q.value()) * node.rotation.by_slip);
     let along = change[0] * node.tangent[0] + change[1] * node.tangent[1] + change[2] * node.tangent[2];
     std::array::from_fn(|c| change[c] - along * node.tangent[c] + node.tangent[c])
 }
@@ -89,7 +89,7 @@ const BY_PAIR: Formulation = Formulation {
 /// By node, with a multiplier a node and direction.
 static IMPLICIT: Formulation = Formulation {
     friction: Friction::Coulomb,
-    compliant: true,
+    regularised: true,
     ..Formulation::of::<AlmFrictional>(BY_PAIR.condition, BY_PAIR.variables)
 };
 

@@ -38,7 +38,7 @@ const BY_PAIR: Formulation = Formulation::of::<PenaltyFrictionless>(
 
 /// By node, with a multiplier a node.
 static IMPLICIT: Formulation =
-    Formulation { compliant: true, ..Formulation::of::<AlmFrictionless>(BY_PAIR.condition, BY_PAIR.variables) };
+    Formulation { regularised: true, ..Formulation::of::<AlmFrictionless>(BY_PAIR.condition, BY_PAIR.variables) };
 
 /// By node, in explicit steps.
 static EXPLICIT: Formulation = Formulation::of::<PenaltyByNode>(BY_PAIR.condition, BY_PAIR.variables);

@@ -12,7 +12,7 @@ register_contact_formulation! { "PerturbedLagrangianContactFrictionless",
         "PerturbedLagrangianFrictionlessAxisymMortarContactCondition"
     ],
     build: Formulation {
-        compliant: true,
+        regularised: true,
         ..Formulation::of::<AlmFrictionless>(
             "PerturbedLagrangianFrictionlessMortarContactCondition",
             &[("NORMAL", 3), ("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE", 1), ("WEIGHTED_GAP", 1)],

@@ -9,7 +9,7 @@ register_contact_formulation! { "UzawaContactFrictionless",
     source: "eq. D.10",
     conditions: ["UzawaFrictionlessMortarContactCondition", "UzawaFrictionlessAxisymMortarContactCondition"],
     build: Formulation {
-        compliant: true,
+        regularised: true,
         updated: true,
         ..Formulation::of::<AlmFrictionless>(
             "UzawaFrictionlessMortarContactCondition",

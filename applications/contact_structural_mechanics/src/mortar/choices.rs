@@ -19,8 +19,8 @@ pub struct Choices {
 
 impl Choices {
     /// Whether standard shape functions stand in for dual ones on a sub-facet of the slave.
-    pub fn is_plain(&self, piece: usize) -> bool {
-        self.plain & (1 << piece) != 0
+    pub fn is_plain(&self, sub_facet: usize) -> bool {
+        self.plain & (1 << sub_facet) != 0
     }
 }
 

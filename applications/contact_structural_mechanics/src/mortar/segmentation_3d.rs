@@ -250,16 +250,16 @@ impl PointList {
                 let range = -TOLERANCE..=1.0 + TOLERANCE;
                 if range.contains(&t) && range.contains(&u) {
                     let point = [a[0] + t * along[0], a[1] + t * along[1]];
-                    let reach = if grazing { self.tolerance / sine } else { self.tolerance };
-                    self.push(point, Vertex::Crossing { slave: i, master: j }, reach);
+                    let distance = if grazing { self.tolerance / sine } else { self.tolerance };
+                    self.push(point, Vertex::Crossing { slave: i, master: j }, distance);
                 }
             }
         }
     }
 
-    /// Adds a point that no other is within `reach` of.
-    fn push(&mut self, point: [f64; 2], vertex: Vertex, reach: f64) {
-        if self.points[..self.len].iter().all(|&p| length(minus(point, p)) > reach) {
+    /// Adds a point that no other is within `distance` of.
+    fn push(&mut self, point: [f64; 2], vertex: Vertex, distance: f64) {
+        if self.points[..self.len].iter().all(|&p| length(minus(point, p)) > distance) {
             self.points[self.len] = point;
             self.vertices[self.len] = vertex;
             self.len += 1;

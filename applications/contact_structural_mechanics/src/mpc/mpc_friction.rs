@@ -9,11 +9,11 @@ use zelus_structural_mechanics::variables::REACTION;
 
 use super::node_relation::NodeRelation;
 use super::slider_forces::{Slider, SliderForces};
-use crate::active_set::resolved_length;
+use crate::active_set::length_tolerance;
 use crate::law::{Bound, NodeState, SlipRule};
 use crate::mortar::tangential;
-use crate::resolution::is_more;
 use crate::slave_nodes::SlaveStates;
+use crate::tolerances::is_more;
 
 /// Stiffness of the trial force, in those of the body: large, so that its direction is that of the slip.
 const DIRECTION: f64 = 1e3;
@@ -53,7 +53,7 @@ impl MpcFriction {
         let before = std::mem::take(&mut self.directions);
         states.for_all(|state| state.kinematics.weighted_slip = [0.0; 3]);
         let mut sliders = Vec::new();
-        let resolved = resolved_length(part, &states.mesh_nodes());
+        let resolved = length_tolerance(part, &states.mesh_nodes());
         for (&node, relation) in relations {
             let slave = states.only_at(node);
             let state = &mut states[slave];

@@ -13,9 +13,9 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
     ActiveSet, Coupling, EntityBlock, Interaction, Join, PairState, Retry, SetChange, require_kind,
 };
-use zelus_core::model::{MasterSlaveConstraint, ModelPart, Nodes, Role};
+use zelus_core::model::{EntityRole, MasterSlaveConstraint, ModelPart, Nodes};
 use zelus_core::vector3::{dot, norm, scale};
-use zelus_core::{Carrier, Result, State};
+use zelus_core::{Result, State, StateMapper};
 use zelus_structural_mechanics::variables::{NORMAL, REACTION};
 
 use super::mpc_friction::{MpcFriction, reaction};
@@ -25,7 +25,7 @@ use super::mpc_settings::{MpcSettings, require_slaves_of_first_order};
 use super::node_relation::{FollowingComponents, NodeRelation, can_follow};
 use super::relations::Relations;
 use crate::active_set::activation::{self, ActivationCriterion};
-use crate::active_set::resolved_length;
+use crate::active_set::length_tolerance;
 use crate::flags::{CONTACT, MASTER, SLAVE};
 use crate::friction;
 use crate::interface::{
@@ -85,9 +85,9 @@ struct SavedMpc {
 
 #[typetag::serde(name = "mpc_contact")]
 impl State for SavedMpc {
-    fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.relations.carry(carrier);
-        carrier.node_map(&mut self.directions);
+    fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        self.relations.remap(mapper);
+        mapper.node_map(&mut self.directions);
     }
 }
 
@@ -190,7 +190,7 @@ impl MpcInteraction {
                 && !can_follow(part, node, n)
                 && relation.weights.iter().any(|&(master, _)| can_follow(part, master, n))
         };
-        let resolved = resolved_length(part, &self.states.mesh_nodes());
+        let resolved = length_tolerance(part, &self.states.mesh_nodes());
         let held = self.relations.nodes.iter().filter(|(node, relation)| presses(**node, relation));
         let depth = |node: u32| {
             let state = &self.states[self.states.only_at(node)];
@@ -327,7 +327,7 @@ impl Interaction for MpcInteraction {
                 friction::prepare(part, &self.interfaces, &self.settings.friction, friction, &mut self.messages)?;
             let facet = &self.interfaces[0].facets[0];
             let name = condition_name("MPCMortarContactCondition", facet.shape, facet.shape);
-            self.friction.entry = Some(require_kind(Role::Condition, &name)?);
+            self.friction.entry = Some(require_kind(EntityRole::Condition, &name)?);
         }
         nodal_normals(part, &self.interfaces);
         let columns = SlaveColumns { friction: self.settings.kind == MpcKind::Frictional, ..SlaveColumns::default() };
@@ -382,7 +382,7 @@ impl Interaction for MpcInteraction {
         Ok(())
     }
 
-    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+    fn finalize_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.warn_of_held(part);
         if self.acting {
             self.in_contact.accept(&self.slaves_by_interface(), &self.states);
@@ -440,7 +440,7 @@ impl Interaction for MpcInteraction {
                 .at(dot(reaction(part, node), state.kinematics.normal) / state.kinematics.area);
             norm(state.kinematics.weighted_slip) * bound
         };
-        let (holds, least) = (friction || self.settings.ties(), resolved_length(part, &self.states.mesh_nodes()));
+        let (holds, least) = (friction || self.settings.ties(), length_tolerance(part, &self.states.mesh_nodes()));
         let mut out =
             pair_states(&self.interfaces, parts, (&self.states, &self.slaves_by_interface()), holds, least, of_node);
         for (interface, pair) in self.interfaces.iter().zip(&mut out) {

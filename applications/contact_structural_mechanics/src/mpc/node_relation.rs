@@ -14,7 +14,7 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use zelus_core::Carrier;
+use zelus_core::StateMapper;
 use zelus_core::model::{MasterSlaveConstraint, ModelPart};
 use zelus_core::vector3::{dot, normalised, sub};
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
@@ -95,11 +95,11 @@ impl PairRelation {
         self.rows.iter().flat_map(|row| row.weights.iter().map(|(node, _)| *node).chain([row.node]))
     }
 
-    /// See [`State::carry`](zelus_core::State::carry).
-    pub(crate) fn carry(&mut self, carrier: &mut dyn Carrier) {
+    /// See [`State::remap`](zelus_core::State::remap).
+    pub(crate) fn remap(&mut self, mapper: &mut dyn StateMapper) {
         for row in &mut self.rows {
-            carrier.nodes(std::slice::from_mut(&mut row.node));
-            carrier.node_list(&mut row.weights);
+            mapper.nodes(std::slice::from_mut(&mut row.node));
+            mapper.node_list(&mut row.weights);
         }
     }
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
-use zelus_core::Carrier;
 use zelus_core::Result;
+use zelus_core::StateMapper;
 use zelus_core::diagnostics::{Diagnostic, unfit};
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, norm, sub};
@@ -67,11 +67,11 @@ impl Relations {
         Ok(())
     }
 
-    /// See [`State::carry`](zelus_core::State::carry).
-    pub(crate) fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.pairs.values_mut().for_each(|relation| relation.carry(carrier));
-        carrier.node_map(&mut self.nodes);
-        self.nodes.values_mut().for_each(|relation| carrier.node_list(&mut relation.weights));
+    /// See [`State::remap`](zelus_core::State::remap).
+    pub(crate) fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        self.pairs.values_mut().for_each(|relation| relation.remap(mapper));
+        mapper.node_map(&mut self.nodes);
+        self.nodes.values_mut().for_each(|relation| mapper.node_list(&mut relation.weights));
     }
 
     /// Relations of the pairs that overlap; those that hold a node stay as they were made, unless they are to be renewed.

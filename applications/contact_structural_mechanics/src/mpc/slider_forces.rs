@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use zelus_core::model::EntityKind;
 
-use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, Request, StepView, Tangent};
 
 use zelus_core::vector3::{norm, scale};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
@@ -27,7 +27,7 @@ pub(crate) struct Slider {
     /// The part of the friction that does not go with the pressure.
     force: [f64; 3],
     /// κ, how fast the force turns with the slip (force by length).
-    turning: f64,
+    rotation: f64,
 }
 
 impl Slider {
@@ -42,9 +42,9 @@ impl Slider {
         stiffness: f64,
     ) -> Self {
         let size = norm(trial);
-        let [direction, turning] = if size > 0.0 { [1.0 / size, bound * stiffness / size] } else { [0.0; 2] };
+        let [direction, rotation] = if size > 0.0 { [1.0 / size, bound * stiffness / size] } else { [0.0; 2] };
         let direction = scale(trial, direction);
-        Self { node, masters, direction, normal, force: scale(direction, constant), turning }
+        Self { node, masters, direction, normal, force: scale(direction, constant), rotation }
     }
 }
 
@@ -123,12 +123,12 @@ impl EntityBlock for SliderForces {
         &self,
         _view: &StepView<'_>,
         range: Range<usize>,
-        _want: Want,
+        _request: Request,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         let dimension = self.dimension;
         for (slot, at) in range.enumerate() {
-            let Slider { masters, force, normal, direction, turning, .. } = &self.sliders[at];
+            let Slider { masters, force, normal, direction, rotation, .. } = &self.sliders[at];
             let share = |node: usize| masters.get(node).map_or(1.0, |m| -m.1);
             let (lhs, rhs) = out.entity(slot);
             for (row, r) in rhs.iter_mut().enumerate() {
@@ -139,7 +139,7 @@ impl EntityBlock for SliderForces {
                 let (row, column) = (place / size, place % size);
                 let (i, j) = (row % dimension, column % dimension);
                 let across = f64::from(u8::from(i == j)) - direction[i] * direction[j] - normal[i] * normal[j];
-                *k = turning * share(row / dimension) * share(column / dimension) * across;
+                *k = rotation * share(row / dimension) * share(column / dimension) * across;
             }
         }
         Ok(())
@@ -150,7 +150,7 @@ impl EntityBlock for SliderForces {
 mod tests {
     use super::*;
     use zelus_core::entities::require_kind;
-    use zelus_core::model::Role;
+    use zelus_core::model::EntityRole;
     use zelus_core::vector3::{add, dot, sub};
 
     const MASTERS: [(u32, f64); 2] = [(4, 0.7), (5, 0.3)];
@@ -165,13 +165,13 @@ mod tests {
     }
 
     fn system(u: &[[f64; 3]; 3]) -> LocalSystems {
-        let entry = require_kind(Role::Condition, "MPCMortarContactCondition3D3N").expect("a registered name");
+        let entry = require_kind(EntityRole::Condition, "MPCMortarContactCondition3D3N").expect("a registered name");
         let block = &SliderForces::blocks(entry, vec![slider(u)], 3)[0];
         assert_eq!((block.nodes(0), block.unknowns().len()), (&[4, 5, 9][..], 9));
         let mut out = LocalSystems::default();
-        out.reset(1, 9, Want::Both);
+        out.reset(1, 9, Request::Both);
         let part = zelus_core::model::ModelPart::new("Structure");
-        block.local_systems(&part.view(), 0..1, Want::Both, &mut out).expect("a system");
+        block.local_systems(&part.view(), 0..1, Request::Both, &mut out).expect("a system");
         out
     }
 

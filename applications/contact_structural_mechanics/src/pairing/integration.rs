@@ -3,10 +3,10 @@
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::add;
 
-use super::coverage::isolate_beside;
+use super::edge_nodes::isolate_edge_nodes;
 use super::edges::keep_one_of_a_normal;
 use super::pairs_of_interfaces::Pairing;
-use crate::active_set::resolution;
+use crate::active_set::tolerances;
 use crate::law::constrained_multiplier::along_free_tangents;
 use crate::pairs::Integral;
 use crate::settings::Setup;
@@ -25,7 +25,7 @@ struct NodeIntegrals {
     /// Area times trial traction.
     trial: [f64; 3],
     /// Area times history traction.
-    carried: [f64; 3],
+    history_traction: [f64; 3],
 }
 
 impl NodeIntegrals {
@@ -37,18 +37,18 @@ impl NodeIntegrals {
         self.gap_by_area += gap * area;
         self.slip = add(self.slip, integral.slip[local]);
         self.trial = add(self.trial, integral.trial[local]);
-        self.carried = add(self.carried, integral.carried[local]);
+        self.history_traction = add(self.history_traction, integral.history_traction[local]);
     }
 }
 
 impl Summands<12> for NodeIntegrals {
     fn numbers(&self) -> [f64; 12] {
-        let [[a, b, c], [d, e, f], [g, h, i]] = [self.slip, self.trial, self.carried];
+        let [[a, b, c], [d, e, f], [g, h, i]] = [self.slip, self.trial, self.history_traction];
         [self.gap, self.area, self.gap_by_area, a, b, c, d, e, f, g, h, i]
     }
 
     fn of([gap, area, gap_by_area, a, b, c, d, e, f, g, h, i]: [f64; 12]) -> Self {
-        Self { gap, area, gap_by_area, slip: [a, b, c], trial: [d, e, f], carried: [g, h, i] }
+        Self { gap, area, gap_by_area, slip: [a, b, c], trial: [d, e, f], history_traction: [g, h, i] }
     }
 }
 
@@ -84,27 +84,30 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
 
     let formulation = setup.settings.formulation;
     states.for_each(|node, state| {
-        let NodeIntegrals { gap, area, gap_by_area, slip, trial, carried } = sums[node];
+        let NodeIntegrals { gap, area, gap_by_area, slip, trial, history_traction } = sums[node];
         let by_area = |sum: [f64; 3]| if area > 0.0 { sum.map(|t| t / area) } else { [0.0; 3] };
         (state.kinematics.area, state.kinematics.weighted_gap, state.kinematics.isolated) =
             (area, gap, state.kinematics.pairs == 0);
         state.kinematics.mean_weighted_gap = if area > 0.0 { gap_by_area / area } else { 0.0 };
         if formulation.frictional() {
-            let is_held = state.law.held.iter().any(|held| held.is_still());
-            state.kinematics.weighted_slip =
-                if is_held { along_free_tangents(slip, state.kinematics.normal, state.law.held) } else { slip };
+            let is_constrained = state.law.constraints.iter().any(|constraint| constraint.is_still());
+            state.kinematics.weighted_slip = if is_constrained {
+                along_free_tangents(slip, state.kinematics.normal, state.law.constraints)
+            } else {
+                slip
+            };
             if formulation.multiplier.is_unknown() {
                 state.law.multiplier_weight = state.equation_weight(&setup.parameters);
             }
         }
         state.law.trial = by_area(trial);
         if setup.by_points() {
-            state.law.carried = by_area(carried);
+            state.law.history_traction = by_area(history_traction);
         }
     });
     let around = setup.parameters.segmentation.revolution();
     let weight = |n: u32| around.map_or(1.0, |per_radius| per_radius * part.nodes.current[n as usize][0]);
-    isolate_beside(part, states, pairing, setup.settings.least_coverage, weight);
+    isolate_edge_nodes(part, states, pairing, setup.settings.least_coverage, weight);
     keep_one_of_a_normal(states);
-    setup.resolution = resolution(part, &pairing.nodes(), states, formulation, &setup.parameters);
+    setup.tolerances = tolerances(part, &pairing.nodes(), states, formulation, &setup.parameters);
 }

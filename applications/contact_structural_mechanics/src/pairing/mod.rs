@@ -1,6 +1,6 @@
 //! Pairs of all interfaces: found by the search, kept in blocks, integrated to gaps, slips and areas of slave nodes.
 
-mod coverage;
+mod edge_nodes;
 mod edges;
 mod integration;
 mod pairs_of_interfaces;

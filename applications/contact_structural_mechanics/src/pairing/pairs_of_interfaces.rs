@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::diagnostics::{Diagnostic, unfit};
 use zelus_core::entities::{EntityBlock, require_kind};
-use zelus_core::model::{ModelPart, Role};
+use zelus_core::model::{EntityRole, ModelPart};
 use zelus_core::parallel;
 use zelus_core::vector3::dot;
 
@@ -19,10 +19,10 @@ use crate::interface::{
 use crate::law::{NormalVariation, StepParameters};
 use crate::mortar::{Choices, MOST_NODES, SegmentationSettings};
 use crate::pairs::{
-    ContactBlock, Integral, PAIRS, Pair, PairKey, PairRequest, Present, check_pairs, condition_name, group_by_shapes,
-    group_by_surroundings,
+    ContactBlock, Integral, IntegrationState, PAIRS, Pair, PairKey, PairRequest, check_pairs, condition_name,
+    group_by_shapes, group_by_surroundings,
 };
-use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_reach};
+use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_search_radius};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::{SlaveStates, SlaveSums, SlaveTable};
 
@@ -233,7 +233,7 @@ impl Pairing {
         }
         self.share_out(part);
         self.touching = touching;
-        Ok(warns.then(|| warn_of_reach(lost)))
+        Ok(warns.then(|| warn_of_search_radius(lost)))
     }
 
     /// On several ranks: lets ranks with few pairs evaluate some of those with many.
@@ -249,7 +249,7 @@ impl Pairing {
         part.share = Some(share);
     }
 
-    /// Pairs that are near each other, and whether their centres are within reach.
+    /// Pairs that are near each other, and whether their centres are within the search radius.
     pub(crate) fn candidates(&self, part: &ModelPart, settings: &ContactSettings) -> Vec<(PairKey, bool)> {
         let of_interface = |(at, interface): (usize, &Interface)| {
             let found = candidates(part, interface, &settings.search).into_iter();
@@ -292,7 +292,7 @@ impl Pairing {
         let mut blocks = Vec::new();
         for ((slave, master), (pairs, nodes)) in groups {
             let name = condition_name(&stem, slave, master);
-            let entry = require_kind(Role::Condition, &name)?;
+            let entry = require_kind(EntityRole::Condition, &name)?;
             let exact = parameters.normal_variation == NormalVariation::Exact;
             let around = |pair: &Pair| {
                 let mut around = self.bodies.nodes([pair.key.interface, pair.key.slave]).to_vec();
@@ -397,14 +397,14 @@ impl Pairing {
             }
         }
         let own = |nodes: &[u32]| part.evaluates_pair(nodes);
-        let present = Present { view: &part.view(), states, own: &own };
+        let present = IntegrationState { view: &part.view(), states, own: &own };
         self.blocks.iter_mut().for_each(|block| block.keep_operators(present));
     }
 
     /// Freezes the choices of the integration of all pairs until the step ends.
     pub(crate) fn freeze_choices(&mut self, part: &ModelPart, states: &SlaveStates) {
         let own = |nodes: &[u32]| part.evaluates_pair(nodes);
-        let present = Present { view: &part.view(), states, own: &own };
+        let present = IntegrationState { view: &part.view(), states, own: &own };
         self.blocks.iter_mut().for_each(|block| block.freeze_choices(present));
     }
 
@@ -483,7 +483,7 @@ pub(crate) fn integrals(
     states: &SlaveStates,
 ) -> Vec<Vec<Integral>> {
     let own = |nodes: &[u32]| part.evaluates_pair(nodes);
-    let present = Present { view: &part.view(), states, own: &own };
+    let present = IntegrationState { view: &part.view(), states, own: &own };
     let integrals = blocks.iter_mut().map(|block| {
         block.find_operators(present);
         block.integrate(present)

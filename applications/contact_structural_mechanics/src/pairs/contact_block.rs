@@ -10,7 +10,7 @@ use crate::slave_nodes::SlaveStates;
 
 /// The present state, as pairs are integrated in it.
 #[derive(Clone, Copy)]
-pub struct Present<'a> {
+pub struct IntegrationState<'a> {
     /// Fields and step data.
     pub view: &'a StepView<'a>,
     /// The slave nodes.
@@ -34,16 +34,16 @@ pub trait ContactBlock: EntityBlock {
     fn set_states(&mut self, states: Arc<SlaveStates>);
 
     /// Computes the operators of this rank's pairs in the present state. Whatever is asked next of the same state has them.
-    fn find_operators(&mut self, present: Present<'_>);
+    fn find_operators(&mut self, present: IntegrationState<'_>);
 
     /// Gap, slip and area of every pair in the present configuration; those of other ranks stay without overlap.
-    fn integrate(&self, present: Present<'_>) -> Vec<Integral>;
+    fn integrate(&self, present: IntegrationState<'_>) -> Vec<Integral>;
 
     /// Step start: keeps the operators of the pairs of this rank against which slip is measured.
-    fn keep_operators(&mut self, present: Present<'_>);
+    fn keep_operators(&mut self, present: IntegrationState<'_>);
 
     /// Freezes the choices of the integration of this rank's pairs.
-    fn freeze_choices(&mut self, present: Present<'_>);
+    fn freeze_choices(&mut self, present: IntegrationState<'_>);
 
     /// The same block for the assembly.
     fn as_entities(&self) -> &dyn EntityBlock;

@@ -63,7 +63,7 @@ pub struct Formulation {
     /// Whether its penalty counts weighted gaps, and is a stress by length and area; otherwise gaps.
     pub weighted_gaps: bool,
     /// Whether contact is regularised: gap and slip have an elastic part, traction over penalty, the traction being a multiplier.
-    pub compliant: bool,
+    pub regularised: bool,
     /// Whether an outer loop takes away by how much, by Uzawa's iteration.
     pub updated: bool,
     /// The formulations that take its place where its penalty is that of whole nodes.
@@ -97,7 +97,7 @@ impl Formulation {
             friction: Friction::None,
             decide,
             weighted_gaps: false,
-            compliant: false,
+            regularised: false,
             updated: false,
             by_node: None,
             block,
@@ -115,7 +115,7 @@ impl Formulation {
         SlaveColumns {
             tractions: true,
             friction: self.frictional(),
-            carried: [&FRICTION_TRACTION, &CARRIED_TRACTION].into_iter().find(carries),
+            history_traction: [&FRICTION_TRACTION, &CARRIED_TRACTION].into_iter().find(carries),
         }
     }
 }

@@ -78,8 +78,10 @@ impl<'a, T: Real> PairKinematics<'a, T> {
         let measure = law.slip();
         let rotates = law.has_history() || measure == SlipMeasure::Rotated;
         let rotation = rotates.then(|| history.rotation(geometry));
-        let carried = |j: usize| match &rotation {
-            Some(rotation) if law.has_history() => tangential(rotation.apply(constant(nodes[j].carried)), normals[j]),
+        let history_traction = |j: usize| match &rotation {
+            Some(rotation) if law.has_history() => {
+                tangential(rotation.apply(constant(nodes[j].history_traction)), normals[j])
+            }
             _ => [T::zero(); 3],
         };
         Self {
@@ -87,7 +89,7 @@ impl<'a, T: Real> PairKinematics<'a, T> {
             operators,
             gap: weighted_gap(operators, &geometry.slave, &geometry.master, normals),
             slip: history.slip(measure, geometry, operators, rotation.as_ref()),
-            history: Nodal::new(geometry.slave.len(), carried),
+            history: Nodal::new(geometry.slave.len(), history_traction),
             area: operators.d.map(|row| row.iter().fold(T::zero(), |sum, d| sum + *d)),
         }
     }

@@ -16,7 +16,7 @@ mod pairs_of_shapes;
 
 pub use crate::law::Multiplier;
 pub use crate::mortar::condition_name;
-pub use contact_block::{ContactBlock, Present};
+pub use contact_block::{ContactBlock, IntegrationState};
 pub use facet_operators::{FacetOperators, FacetPair, facet_operators, nodal_normals, overlapping_pairs};
 pub use facing_points::{FacingPoint, facing_points};
 pub use formulation::{

@@ -4,12 +4,12 @@ use std::ops::Range;
 use std::sync::Arc;
 use zelus_core::model::EntityKind;
 
-use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, Request, StepView, Tangent};
 use zelus_core::geometry::Nodal;
 use zelus_core::scalar::Real;
 use zelus_core::vector3::dot;
 
-use super::contact_block::{ContactBlock, Present};
+use super::contact_block::{ContactBlock, IntegrationState};
 use super::pair::{Integral, Pair};
 use super::pair_request::PairRequest;
 use super::pairs_of_shapes::PairsOfShapes;
@@ -48,7 +48,12 @@ impl NitscheBlock {
             let own = &states[slaves[j]];
             let (forced_active, forced_stick) =
                 (f64::from(u8::from(own.law.forced_active)), f64::from(u8::from(own.law.forced_stick)));
-            NodeOfPoints { carried: own.last.carried, friction: own.parameters.friction, forced_active, forced_stick }
+            NodeOfPoints {
+                history_traction: own.last.history_traction,
+                friction: own.parameters.friction,
+                forced_active,
+                forced_stick,
+            }
         })
     }
 
@@ -184,7 +189,7 @@ impl EntityBlock for NitscheBlock {
     }
 
     fn tangent(&self) -> Tangent {
-        Tangent::General
+        Tangent::Unsymmetric
     }
 
     fn is_active(&self, at: usize, _view: &StepView<'_>) -> bool {
@@ -195,7 +200,7 @@ impl EntityBlock for NitscheBlock {
         &self,
         view: &StepView<'_>,
         range: Range<usize>,
-        want: Want,
+        request: Request,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         for (slot, at) in range.enumerate() {
@@ -204,7 +209,7 @@ impl EntityBlock for NitscheBlock {
             }
             let width = out.size;
             let (lhs, rhs) = out.entity(slot);
-            if want == Want::Both {
+            if request == Request::Both {
                 self.system(at, view, (lhs, width), rhs)?;
             } else {
                 self.residual(at, view, rhs)?;
@@ -231,14 +236,14 @@ impl ContactBlock for NitscheBlock {
         self.pairs.states = states;
     }
 
-    fn find_operators(&mut self, present: Present<'_>) {
+    fn find_operators(&mut self, present: IntegrationState<'_>) {
         self.pairs.find_operators(present);
     }
 
     /// The forces of points stand for area times traction. Where an element is inverted there are none; the assembly, which
     /// meets the same element, says so.
-    fn integrate(&self, present: Present<'_>) -> Vec<Integral> {
-        let Present { view, states, .. } = present;
+    fn integrate(&self, present: IntegrationState<'_>) -> Vec<Integral> {
+        let IntegrationState { view, states, .. } = present;
         self.pairs.integrate(present, &|at, geometry, operators, out| {
             let count = geometry.slave.len();
             if self.formulation.friction.is_some() {
@@ -250,16 +255,16 @@ impl ContactBlock for NitscheBlock {
             let Ok(tractions) = self.bodies.tractions(self.key(at), view, false) else { return };
             if let Some(forces) = self.forces(at, (view, states), geometry, &tractions.values) {
                 out.trial[..count].copy_from_slice(&forces.traction);
-                out.carried[..count].copy_from_slice(&forces.carried);
+                out.history_traction[..count].copy_from_slice(&forces.history_traction);
             }
         })
     }
 
-    fn keep_operators(&mut self, present: Present<'_>) {
+    fn keep_operators(&mut self, present: IntegrationState<'_>) {
         self.pairs.keep_operators(present);
     }
 
-    fn freeze_choices(&mut self, present: Present<'_>) {
+    fn freeze_choices(&mut self, present: IntegrationState<'_>) {
         self.pairs.freeze_choices(present);
     }
 

@@ -105,5 +105,5 @@ pub struct Integral {
     /// Area times trial traction, where a formulation carries tractions from state to state.
     pub trial: [[f64; 3]; MOST_NODES],
     /// Area times traction that the body lacks, where integration points decide on friction.
-    pub carried: [[f64; 3]; MOST_NODES],
+    pub history_traction: [[f64; 3]; MOST_NODES],
 }

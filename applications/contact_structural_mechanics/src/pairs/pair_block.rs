@@ -4,11 +4,11 @@ use std::cell::OnceCell;
 use std::ops::Range;
 use std::sync::Arc;
 
-use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, Request, StepView, Tangent};
 use zelus_core::geometry::Nodal;
 use zelus_core::model::EntityKind;
 
-use super::contact_block::{ContactBlock, Present};
+use super::contact_block::{ContactBlock, IntegrationState};
 use super::kinematics::PairHistory;
 use super::local_system::{PairSystem, multipliers_of};
 use super::pair::{Integral, Pair};
@@ -78,7 +78,7 @@ impl EntityBlock for PairBlock {
     }
 
     fn tangent(&self) -> Tangent {
-        Tangent::General
+        Tangent::Unsymmetric
     }
 
     fn is_active(&self, at: usize, _view: &StepView<'_>) -> bool {
@@ -89,7 +89,7 @@ impl EntityBlock for PairBlock {
         &self,
         view: &StepView<'_>,
         range: Range<usize>,
-        want: Want,
+        request: Request,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         let Self { law, pairs } = self;
@@ -114,7 +114,7 @@ impl EntityBlock for PairBlock {
             let (width, rows) = (out.size, self.equations());
             let (lhs, rhs) = out.entity(slot);
             let rhs = &mut rhs[..rows];
-            if want == Want::Both {
+            if request == Request::Both {
                 let lhs = &mut lhs[..rows * width];
                 let knows = FirstIterateTangent::of(view, geometry.space());
                 let found = || pairs.operators_of(at, &geometry);
@@ -148,12 +148,12 @@ impl ContactBlock for PairBlock {
         self.pairs.states = states;
     }
 
-    fn find_operators(&mut self, present: Present<'_>) {
+    fn find_operators(&mut self, present: IntegrationState<'_>) {
         self.pairs.find_operators(present);
     }
 
-    fn integrate(&self, present: Present<'_>) -> Vec<Integral> {
-        let Present { view, states, .. } = present;
+    fn integrate(&self, present: IntegrationState<'_>) -> Vec<Integral> {
+        let IntegrationState { view, states, .. } = present;
         self.pairs.integrate(present, &|at, geometry, operators, out| {
             let system = PairSystem {
                 law: self.law.as_ref(),
@@ -171,11 +171,11 @@ impl ContactBlock for PairBlock {
         })
     }
 
-    fn keep_operators(&mut self, present: Present<'_>) {
+    fn keep_operators(&mut self, present: IntegrationState<'_>) {
         self.pairs.keep_operators(present);
     }
 
-    fn freeze_choices(&mut self, present: Present<'_>) {
+    fn freeze_choices(&mut self, present: IntegrationState<'_>) {
         self.pairs.freeze_choices(present);
     }
 

@@ -10,13 +10,13 @@ use zelus_core::parallel;
 use zelus_core::vector3::{add, scale};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
-use super::contact_block::Present;
+use super::contact_block::IntegrationState;
 use super::grouping::PAIRS;
 use super::kinematics::PairHistory;
 use super::known_operators::KnownOperators;
 use super::pair::{Integral, Pair, Previous};
 use super::pair_request::PairRequest;
-use crate::interface::{Corner, NormalPatches, SlaveIndex};
+use crate::interface::{FacetCorner, NormalPatches, SlaveIndex};
 use crate::law::{Augmentation, Multiplier, NormalVariation, SlaveNode, StepParameters};
 use crate::mortar::{Active, Operators, Overlap, PairGeometry, choices_of, operators, weighted_gap};
 use crate::slave_nodes::SlaveStates;
@@ -160,25 +160,25 @@ impl PairsOfShapes {
         let dim = self.slave.space;
         let own = self.pairs[at].key;
         let whole = self.parameters.normal_variation == NormalVariation::Exact;
-        let knows = |corner: &Corner| whole || corner.facet == [own.interface, own.slave];
+        let knows = |corner: &FacetCorner| whole || corner.facet == [own.interface, own.slave];
         // By column, how the normal of a node turns: several facets tell of the same neighbour.
-        let mut turning: Vec<(usize, [[f64; 3]; 3])> = Vec::with_capacity(self.nodes(at).len());
+        let mut variation: Vec<(usize, [[f64; 3]; 3])> = Vec::with_capacity(self.nodes(at).len());
         for (j, &slave) in self.slaves(at).iter().enumerate() {
             if self.states[slave].kinematics.normal_of_master {
                 continue;
             }
-            turning.clear();
+            variation.clear();
             self.patches.variation(slave.0, &view.nodes.current, &knows, &mut |by, matrix| {
                 let column = self.first_row(at, by);
-                match turning.iter_mut().find(|(known, _)| *known == column) {
+                match variation.iter_mut().find(|(known, _)| *known == column) {
                     Some((_, sum)) => (0..dim).for_each(|r| (0..dim).for_each(|c| sum[r][c] += matrix[r][c])),
-                    None => turning.push((column, matrix)),
+                    None => variation.push((column, matrix)),
                 }
             });
             for (row, derivatives) in by_normals.chunks_exact(dim * self.slave.nodes).enumerate() {
                 let by_normal: [f64; 3] = std::array::from_fn(|r| if r < dim { derivatives[dim * j + r] } else { 0.0 });
                 let lhs = &mut lhs[row * width..(row + 1) * width];
-                for (column, matrix) in &turning {
+                for (column, matrix) in &variation {
                     let entries = &mut lhs[*column..*column + dim];
                     for (c, entry) in entries.iter_mut().enumerate() {
                         *entry -= (0..dim).map(|r| by_normal[r] * matrix[r][c]).sum::<f64>();
@@ -218,19 +218,19 @@ impl PairsOfShapes {
             SlaveNode {
                 state: node.contact(),
                 penalty: node.parameters.penalty,
-                compliance: if self.parameters.compliant { node.parameters.penalty.recip() } else { 0.0 },
-                kept: node.law.kept_pressure,
+                compliance: if self.parameters.regularised { node.parameters.penalty.recip() } else { 0.0 },
+                uzawa_pressure: node.law.uzawa_pressure,
                 stiffness,
                 area: if by_pair { area } else { share },
                 dynamic_factor: node.parameters.dynamic_factor,
                 friction: node.parameters.friction,
                 tangent: node.law.tangent,
-                turning: node.law.turning,
-                held: node.law.held,
-                held_weight: k * k * area / stiffness,
-                carried: node.last.carried,
+                rotation: node.law.rotation,
+                constraints: node.law.constraints,
+                constraint_weight: k * k * area / stiffness,
+                history_traction: node.last.history_traction,
                 traction: add(
-                    node.law.carried,
+                    node.law.history_traction,
                     scale(node.kinematics.normal, node.parameters.penalty * (node.kinematics.weighted_gap / area)),
                 ),
             }
@@ -244,20 +244,24 @@ impl PairsOfShapes {
     }
 
     /// The pair in the present state with its operators, if it is this rank's.
-    fn operators_now(&self, at: usize, present: Present<'_>) -> Option<(PairGeometry<f64>, Overlap<Operators<f64>>)> {
+    fn operators_now(
+        &self,
+        at: usize,
+        present: IntegrationState<'_>,
+    ) -> Option<(PairGeometry<f64>, Overlap<Operators<f64>>)> {
         let geometry = (present.own)(self.nodes(at)).then(|| self.geometry(at, present.view, present.states))?;
         Some((geometry, self.operators_of(at, &geometry)))
     }
 
     /// Computes the operators of this rank's pairs in the present state.
-    pub(super) fn find_operators(&mut self, present: Present<'_>) {
+    pub(super) fn find_operators(&mut self, present: IntegrationState<'_>) {
         self.known = parallel::map(self.pairs.len(), PAIRS, |at| {
             self.operators_now(at, present).map(|(geometry, found)| KnownOperators::new(&geometry, &found))
         });
     }
 
     /// Gap and area of every pair, and the contribution of a law to those that overlap.
-    pub(super) fn integrate(&self, present: Present<'_>, add: Addition<'_>) -> Vec<Integral> {
+    pub(super) fn integrate(&self, present: IntegrationState<'_>, add: Addition<'_>) -> Vec<Integral> {
         parallel::map(self.pairs.len(), PAIRS, |at| {
             let mut out = Integral::default();
             let Some((geometry, found)) = self.operators_now(at, present) else { return out };
@@ -276,7 +280,7 @@ impl PairsOfShapes {
     }
 
     /// Keeps the operators of the pairs of this rank against which slip is measured.
-    pub(super) fn keep_operators(&mut self, present: Present<'_>) {
+    pub(super) fn keep_operators(&mut self, present: IntegrationState<'_>) {
         let kept = |at: usize| {
             let found = self.operators_now(at, present).and_then(|(_, found)| found.cells());
             found.map_or_else(Previous::default, |found| Previous::of(&found))
@@ -286,7 +290,7 @@ impl PairsOfShapes {
     }
 
     /// Freezes the choices of the integration of this rank's pairs.
-    pub(super) fn freeze_choices(&mut self, present: Present<'_>) {
+    pub(super) fn freeze_choices(&mut self, present: IntegrationState<'_>) {
         let choices = |at: usize| {
             let (geometry, found) = self.operators_now(at, present)?;
             Some(choices_of(&geometry, &self.parameters.segmentation, &found.cells()?))

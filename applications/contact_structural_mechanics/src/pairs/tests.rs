@@ -2,7 +2,9 @@
 
 use super::*;
 use crate::kratos::FirstIterateTangent;
-use crate::law::{Augmentation, Bound, ContactLaw, Held, MeshTying, NodeState, SlaveNode, Turning};
+use crate::law::{
+    Augmentation, Bound, ContactLaw, DirectionRotation, MeshTying, MultiplierConstraint, NodeState, SlaveNode,
+};
 use crate::laws::alm_frictional::AlmFrictional;
 use crate::laws::alm_frictionless::AlmFrictionless;
 use crate::laws::alm_frictionless_components::AlmFrictionlessComponents;
@@ -26,7 +28,7 @@ fn nodes(pair: &PairGeometry<f64>, noise: &mut Noise, states: [NodeState; 3]) ->
         state: states[j % 3],
         penalty: 20.0 + 5.0 * noise.next(),
         compliance: 0.06,
-        kept: 0.7,
+        uzawa_pressure: 0.7,
         stiffness: 20.0,
         area: 1.3,
         dynamic_factor: 0.8 + 0.1 * noise.next(),
@@ -35,10 +37,10 @@ fn nodes(pair: &PairGeometry<f64>, noise: &mut Noise, states: [NodeState; 3]) ->
             std::array::from_fn(|c| if c < dim { noise.next() } else { 0.0 }),
             pair.nodal_normals[j],
         )),
-        turning: Turning::default(),
-        held: Default::default(),
-        held_weight: 1.0,
-        carried: std::array::from_fn(|c| if c < dim { 0.1 * noise.next() } else { 0.0 }),
+        rotation: DirectionRotation::default(),
+        constraints: Default::default(),
+        constraint_weight: 1.0,
+        history_traction: std::array::from_fn(|c| if c < dim { 0.1 * noise.next() } else { 0.0 }),
         traction: [0.0; 3],
     })
 }
@@ -97,7 +99,7 @@ fn check_tangent(law: &dyn ContactLaw, slave: &'static FacetShape, master: &'sta
             let mut noise = Noise::new(seed + 100);
             let mut nodes = nodes(&pair, &mut noise, states);
             if seed % 3 == 2 {
-                nodes[0].held[0] = Held::Follows;
+                nodes[0].constraints[0] = MultiplierConstraint::Crosspoint;
             }
             let lambda = multipliers(&pair, &mut noise);
             let history = history(&pair);
@@ -171,7 +173,7 @@ fn frictional(area: f64) -> AlmFrictional {
         tangent_factor: 0.3,
         operator_threshold,
         augmentation: PAIR,
-        compliant: false,
+        regularised: false,
         dynamic: false,
     }
 }
@@ -196,7 +198,7 @@ fn tangents_match_differences() {
         &COMPONENTS,
         &frictional(0.0),
         &by_node,
-        &AlmFrictional { compliant: true, ..by_node },
+        &AlmFrictional { regularised: true, ..by_node },
         &AlmFrictionless { augmentation: Augmentation::Node, ..ALM },
         &frictional(1e9),
         &PenaltyFrictionless,
@@ -218,16 +220,16 @@ fn check_references(law: &dyn ContactLaw, start: &[f64], lines: &[Vec<f64>], his
             penalty: line[32 + j],
             // The reference program divides by the penalty, whatever the area.
             compliance: 0.0,
-            kept: 0.0,
+            uzawa_pressure: 0.0,
             stiffness: line[32 + j] * areas[j],
             area: areas[j],
             dynamic_factor: line[34 + j],
             friction: Bound { coefficient: 0.4, threshold: 0.0 },
             tangent: vector(8 + j),
-            turning: Turning::default(),
-            held: Default::default(),
-            held_weight: 1.0,
-            carried: [0.0; 3],
+            rotation: DirectionRotation::default(),
+            constraints: Default::default(),
+            constraint_weight: 1.0,
+            history_traction: [0.0; 3],
             traction: [0.0; 3],
         });
         let expected = &line[36..];
@@ -324,16 +326,16 @@ fn sign_of_the_contact_force() {
         state: NodeState::Slip,
         penalty: 50.0,
         compliance: 0.0,
-        kept: 0.0,
+        uzawa_pressure: 0.0,
         stiffness: 12.5,
         area: 0.25,
         dynamic_factor: 1.0,
         friction: Bound::default(),
         tangent: [1.0, 0.0, 0.0],
-        turning: Turning::default(),
-        held: Default::default(),
-        held_weight: 1.0,
-        carried: [0.0; 3],
+        rotation: DirectionRotation::default(),
+        constraints: Default::default(),
+        constraint_weight: 1.0,
+        history_traction: [0.0; 3],
         traction: [0.0, 0.0, 50.0 * -0.01],
     };
     // Each slave node: D = 1/4, g = −0.01, force = 50 · 0.01 · 1/4 against the normal; of weighted gaps a quarter of it.
@@ -436,16 +438,16 @@ fn penalty_friction_acts_through_the_mortar_operators() {
                 state,
                 penalty: 50.0,
                 compliance: 0.0,
-                kept: 0.0,
+                uzawa_pressure: 0.0,
                 stiffness: 50.0,
                 area: 0.25,
                 dynamic_factor: 1.0,
                 friction: Bound { coefficient: 0.4, threshold: 0.0 },
                 tangent: free([-1.0, 0.0, 0.0]),
-                turning: Turning::default(),
-                held: Default::default(),
-                held_weight: 1.0,
-                carried: [0.01, 0.0, 0.0],
+                rotation: DirectionRotation::default(),
+                constraints: Default::default(),
+                constraint_weight: 1.0,
+                history_traction: [0.01, 0.0, 0.0],
                 traction: [0.0; 3],
             };
             // The slave has come along x by 0.02 since.

@@ -14,7 +14,7 @@ use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_analysis, check_positive, check_search, segmentation, without_computing_part};
 use crate::adaptation::{AdaptationSettings, ExplicitPenalty, PenaltyRule, UzawaSettings};
-use crate::compatibility::{Refusal, Use, refusal};
+use crate::compatibility::{FormulationUse, Refusal, refusal};
 use crate::friction::FrictionSettings;
 use crate::interaction::ContactInteraction;
 use crate::interface::{AlmParameters, NodalNormals, check_parts};
@@ -190,7 +190,7 @@ fn interaction(
             law: friction_law(settings, formulation.frictional(), request)?,
             coefficients: keys.friction_coefficients.clone(),
             // A penalty holds sliding nodes and sticking ones by the same spring.
-            margin: if formulation.compliant {
+            margin: if formulation.regularised {
                 Margin::default()
             } else {
                 Margin { augmentation: keys.slip_augmentation_coefficient, threshold: keys.slip_threshold }
@@ -353,7 +353,7 @@ fn check_gaps_of_adaptation(settings: &Settings, keys: &PenaltyKeys) -> Result<(
 fn check_use(part: &ModelPart, formulation: &Formulation, settings: &Settings) -> Result<()> {
     check_analysis(settings, part)?;
     let key = "alternative_formulations.axisymmetric";
-    let wanted = Use {
+    let wanted = FormulationUse {
         dimension: part.info.domain_size,
         axisymmetric: settings.get_bool(key)?,
         explicit: part.info.solver.explicit,

@@ -54,7 +54,7 @@ impl FacingPair<'_, '_> {
 impl FacingSurfaces {
     /// By the keys `contact_model_part`, `assume_master_slave`, `search_factor`, `integration_order` and
     /// `normal_orientation_threshold`; `slivers` says whether overlaps of next to no size count, `across` whether facets face each
-    /// other at any distance: else `search_factor` is the reach.
+    /// other at any distance: else `search_factor` is the search radius.
     ///
     /// # Errors
     /// Parts that do not exist or hold no facets, pairs without slaves, numbers out of range.

@@ -7,7 +7,7 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::{Field, Model, ModelPart, Named, named};
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
-use zelus_core::{Carrier, Result, State, register};
+use zelus_core::{Result, State, StateMapper, register};
 use zelus_structural_mechanics::variables::NORMAL;
 
 use super::interface_settings::{check_positive, segmentation};
@@ -132,7 +132,7 @@ struct SavedPairs(Vec<FacetPair>);
 
 #[typetag::serde(name = "simple_mortar_mapper")]
 impl State for SavedPairs {
-    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+    fn remap(&mut self, _mapper: &mut dyn StateMapper) {}
 }
 
 impl Mapper {

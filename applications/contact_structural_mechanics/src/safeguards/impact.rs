@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use zelus_core::entities::Outer;
+use zelus_core::entities::OuterLoop;
 use zelus_core::model::ModelPart;
 use zelus_core::strategies::ENERGY_OF_MOTION;
 use zelus_core::vector3::norm;
@@ -27,8 +27,8 @@ pub(crate) fn near_nodes(part: &ModelPart, pairing: &Pairing, states: &SlaveStat
     let sizes = part.nodes.values.values(&NODAL_H, 0);
     let is_near = |(slave, state): &(SlaveIndex, &SlaveState)| {
         let node = states.mesh_node(*slave);
-        let reach = (sizes[node as usize] + motion) * if before.binary_search(&node).is_ok() { 2.0 } else { 1.0 };
-        state.kinematics.area > 0.0 && state.kinematics.weighted_gap < reach * state.kinematics.area
+        let distance = (sizes[node as usize] + motion) * if before.binary_search(&node).is_ok() { 2.0 } else { 1.0 };
+        state.kinematics.area > 0.0 && state.kinematics.weighted_gap < distance * state.kinematics.area
     };
     let mut near: BTreeSet<u32> = states.iter().filter(is_near).map(|(slave, _)| states.mesh_node(slave)).collect();
     let mut masters = BTreeSet::new();
@@ -56,10 +56,10 @@ pub(crate) fn coarse_impact(
     scale_factor: f64,
     tolerance: f64,
     (start, before): (&[f64], &mut f64),
-) -> Outer {
+) -> OuterLoop {
     let energy = part.info.value_or(ENERGY_OF_MOTION, 0.0);
     if tolerance == 0.0 || energy == 0.0 {
-        return Outer::Done;
+        return OuterLoop::Done;
     }
     let pressure = |slave: SlaveIndex, level: usize| match formulation.multiplier {
         Multiplier::None | Multiplier::Body => 0.0,
@@ -71,8 +71,8 @@ pub(crate) fn coarse_impact(
     };
     let error = states.iter().map(work).sum::<f64>() / energy;
     if error <= tolerance || (*before > 0.0 && error > (1.0 - LEAST_GAIN) * *before) {
-        return Outer::Done;
+        return OuterLoop::Done;
     }
     *before = error;
-    Outer::Coarse(format!("contact closes or opens within it, which is {error:.1e} of the energy of motion"))
+    OuterLoop::StepTooLarge(format!("contact closes or opens within it, which is {error:.1e} of the energy of motion"))
 }

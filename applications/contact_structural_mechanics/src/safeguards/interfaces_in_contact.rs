@@ -54,8 +54,8 @@ impl InterfacesInContact {
         let distance = |a: u32, b: u32| norm(sub(place(a), place(b)));
         let mut nearest = (*slaves.first()?, *masters.first()?);
         for &slave in &slaves {
-            let reach = Bounds::of(&[place(slave)]).grown(distance(nearest.0, nearest.1));
-            for master in tree.meeting(&reach).into_iter().map(|at| masters[at as usize]) {
+            let bounds = Bounds::of(&[place(slave)]).grown(distance(nearest.0, nearest.1));
+            for master in tree.meeting(&bounds).into_iter().map(|at| masters[at as usize]) {
                 if distance(slave, master) < distance(nearest.0, nearest.1) {
                     nearest = (slave, master);
                 }

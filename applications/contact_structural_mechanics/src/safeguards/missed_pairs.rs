@@ -11,9 +11,9 @@ use zelus_structural_mechanics::variables::DISPLACEMENT;
 use crate::interface::{Facet, SlaveIndex};
 use crate::pairing::{Pairing, integrals, searching};
 use crate::pairs::{PAIRS, Pair, PairKey};
-use crate::resolution::Resolution;
 use crate::settings::Setup;
 use crate::slave_nodes::{SlaveStates, SlaveSums, Summands};
+use crate::tolerances::Tolerances;
 use crate::variables::NODAL_H;
 
 /// Share of a node's area that a pair must integrate to be missed, and of a mesh size (its square in space, its way about the
@@ -33,8 +33,8 @@ pub(crate) struct SearchThresholds {
 
 impl SearchThresholds {
     /// Every pair that changes the contact of a node.
-    pub(crate) fn facing(resolution: Resolution) -> Self {
-        Self { depth: resolution.length, facing: LEAST_SHARE, share: LEAST_SHARE }
+    pub(crate) fn facing(tolerances: Tolerances) -> Self {
+        Self { depth: tolerances.length, facing: LEAST_SHARE, share: LEAST_SHARE }
     }
 
     /// Pairs of nodes that have come through a master by more than `depth`; all pairs once some have been found.

@@ -33,13 +33,14 @@ impl PenetrationCheck {
         most: f64,
         in_contact: impl Fn(usize) -> bool,
     ) -> Option<String> {
-        let idle = interfaces.iter().enumerate().filter(|(at, interface)| !interface.open && !in_contact(*at));
-        let idle: Vec<&Interface> = idle.map(|(_, interface)| interface).collect();
-        if most <= 0.0 || idle.is_empty() {
+        let not_in_contact =
+            interfaces.iter().enumerate().filter(|(at, interface)| !interface.open && !in_contact(*at));
+        let not_in_contact: Vec<&Interface> = not_in_contact.map(|(_, interface)| interface).collect();
+        if most <= 0.0 || not_in_contact.is_empty() {
             return None;
         }
         let sizes = part.nodes.values.values(&NODAL_H, 0);
-        let nodes: Vec<u32> = idle.iter().flat_map(|interface| interface.nodes.iter().copied()).collect();
+        let nodes: Vec<u32> = not_in_contact.iter().flat_map(|interface| interface.nodes.iter().copied()).collect();
         let finest = nodes.iter().map(|&n| sizes[n as usize]).filter(|h| *h > 0.0).fold(f64::INFINITY, f64::min);
         let motion = farthest_motion(part, &nodes);
         let moved = self.moved.map_or(f64::INFINITY, |moved| moved + 2.0 * motion);
@@ -47,19 +48,19 @@ impl PenetrationCheck {
             self.moved = Some(moved);
             return None;
         }
-        let crossed = if motion > finest { idle.iter().find_map(|of| passed(part, of, most)) } else { None };
-        let why = crossed.or_else(|| buried(part, &idle, most));
+        let crossed = if motion > finest { not_in_contact.iter().find_map(|of| passed(part, of, most)) } else { None };
+        let why = crossed.or_else(|| buried(part, &not_in_contact, most));
         self.moved = why.is_none().then_some(0.0);
         self.depends_on_step = why.is_some() && motion > most * finest;
         why
     }
 }
 
-/// Nodes of idle interfaces that are in another body. Collective.
-fn buried(part: &ModelPart, idle: &[&Interface], most: f64) -> Option<String> {
+/// Nodes of interfaces without contact that are in another body. Collective.
+fn buried(part: &ModelPart, not_in_contact: &[&Interface], most: f64) -> Option<String> {
     let sizes = part.nodes.values.values(&NODAL_H, 0);
     let both = |interface: &&Interface| [Roles::Slave, Roles::Master].map(|role| interface.normals_of(part, role));
-    let mut normals: Vec<(u32, [f64; 3])> = idle.iter().flat_map(both).flatten().collect();
+    let mut normals: Vec<(u32, [f64; 3])> = not_in_contact.iter().flat_map(both).flatten().collect();
     normals.retain(|(node, _)| sizes[*node as usize] > 0.0);
     let mut nodes: Vec<u32> = normals.iter().map(|(node, _)| *node).collect();
     nodes.sort_unstable();

@@ -37,8 +37,8 @@ pub(crate) fn pierced(part: &ModelPart, pairing: &Pairing, states: &SlaveStates)
         let tree = Tree::new(slaves.iter().map(|(_, facet)| Bounds::of(&facet.positions(part))).collect());
         for &node in corners {
             let (x, size) = (part.nodes.current[node as usize], part.nodes.values.values(&NODAL_H, 0)[node as usize]);
-            let reach = [x.map(|c| c - size), x.map(|c| c + size)];
-            for near in tree.meeting(&Bounds::of(&reach)) {
+            let corners = [x.map(|c| c - size), x.map(|c| c + size)];
+            for near in tree.meeting(&Bounds::of(&corners)) {
                 let (f, slave) = slaves[near as usize];
                 let active = pairing.patches.of_facet(at as u32, f as u32, slave.nodes.len());
                 let active = active.iter().any(|&slave| states[slave].law.active);

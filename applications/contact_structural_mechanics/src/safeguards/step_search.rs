@@ -3,13 +3,13 @@
 use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::entities::Outer;
+use zelus_core::entities::OuterLoop;
 use zelus_core::model::ModelPart;
 
 use super::missed_pairs::{FoundPairs, SearchThresholds, farthest_motion, missed_pairs};
 use crate::pairing::Pairing;
 use crate::pairs::Pair;
-use crate::search::{WithinStep, warn_of_late_pairs};
+use crate::search::{WithinStep, warn_of_missed_pairs};
 use crate::settings::Setup;
 use crate::slave_nodes::SlaveStates;
 
@@ -41,12 +41,12 @@ impl StepSearch {
         setup: &Setup,
         searched: bool,
     ) -> Result<FoundPairs> {
-        let still = searched && farthest_motion(part, &pairing.nodes()) <= setup.resolution.length;
+        let still = searched && farthest_motion(part, &pairing.nodes()) <= setup.tolerances.length;
         if still || !setup.threshold.is_finite() {
             return Ok(FoundPairs::default());
         }
         let wanted = match setup.settings.search.within_step {
-            WithinStep::Facing => SearchThresholds::facing(setup.resolution),
+            WithinStep::Facing => SearchThresholds::facing(setup.tolerances),
             WithinStep::Lost => SearchThresholds::lost(setup.near(), self.searches > 0),
         };
         missed_pairs(part, (pairing, states), setup, wanted)
@@ -78,10 +78,10 @@ impl StepSearch {
         setup: &Setup,
         searched: bool,
         messages: &mut Vec<Diagnostic>,
-    ) -> Result<(Vec<Pair>, Outer)> {
+    ) -> Result<(Vec<Pair>, OuterLoop)> {
         let late = self.missed_pairs(part, contact, setup, searched)?;
         if late.missed.is_empty() {
-            return Ok((late.missed, Outer::Done));
+            return Ok((late.missed, OuterLoop::Done));
         }
         let why = match late.nodes.iter().take(6).map(|&n| part.nodes.ids[n as usize].to_string()).collect::<Vec<_>>() {
             ids if ids.is_empty() => {
@@ -91,15 +91,15 @@ impl StepSearch {
         };
         if self.searches < MOST_SEARCHES {
             self.searches += 1;
-            return Ok((late.missed, Outer::Widened(why)));
+            return Ok((late.missed, OuterLoop::PairsAdded(why)));
         }
         if !late.nodes.is_empty() {
             let why = format!("{why}, after {MOST_SEARCHES} searches within the step");
-            return Ok((Vec::new(), Outer::Failed(why)));
+            return Ok((Vec::new(), OuterLoop::Failed(why)));
         }
         if !std::mem::replace(&mut self.warned, true) {
-            messages.push(warn_of_late_pairs(late.missed.len(), MOST_SEARCHES));
+            messages.push(warn_of_missed_pairs(late.missed.len(), MOST_SEARCHES));
         }
-        Ok((Vec::new(), Outer::Done))
+        Ok((Vec::new(), OuterLoop::Done))
     }
 }

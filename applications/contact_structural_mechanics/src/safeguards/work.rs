@@ -9,7 +9,7 @@ use zelus_core::diagnostics::{Diagnostic, unfit};
 use zelus_core::entities::EntityBlock;
 use zelus_core::model::ModelPart;
 use zelus_core::strategies::ENERGY_OF_MOTION;
-use zelus_core::{Carrier, Result};
+use zelus_core::{Result, StateMapper};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use crate::solver::ContactSolverSettings;
@@ -53,9 +53,9 @@ impl ContactWork {
         if fits { Ok(()) } else { Err(unfit("the forces of contact that it remembers are of other nodes")) }
     }
 
-    /// See [`State::carry`](zelus_core::State::carry).
-    pub(crate) fn carry(&mut self, carrier: &mut dyn Carrier) {
-        carrier.by_node(&mut self.before);
+    /// See [`State::remap`](zelus_core::State::remap).
+    pub(crate) fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        mapper.by_node(&mut self.before);
     }
 
     /// Adds up the work of the present step, at whose end `blocks` act; collective.

@@ -27,7 +27,7 @@ pub enum GapCheck {
     NoCheck,
 }
 
-/// Between which points of two facets the reach of the search is measured.
+/// Between which points of two facets the search radius is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SearchDistance {
@@ -74,14 +74,14 @@ pub struct Candidate {
     pub slave: u32,
     /// Master facet of the interface.
     pub master: u32,
-    /// Whether the facets are within the reach of the search.
+    /// Whether the facets are within the search radius.
     pub within_reach: bool,
 }
 
 /// Candidates of an interface in the present configuration, ascending; none of those that certainly share no area there, unless nodes are
 /// looked for elsewhere.
 ///
-/// The reach is a multiple of the distance from the centre of the slave to its farthest node, as decks set it. Where it is
+/// The search radius is a multiple of the distance from the centre of the slave to its farthest node, as decks set it. Where it is
 /// measured between centres, facets whose boxes meet although their centres are farther apart are given too, marked.
 pub fn candidates(part: &ModelPart, interface: &Interface, settings: &SearchSettings) -> Vec<Candidate> {
     let of_role = |role: Roles| -> Vec<u32> {
@@ -107,12 +107,13 @@ pub(super) fn among(
     let of_slave = |at: usize| {
         let slave = slaves[at];
         let own = place(slave);
-        let mut reach = settings.factor * own.radius;
+        let mut search_radius = settings.factor * own.radius;
         if settings.distance == SearchDistance::BeyondFirst {
             let facet = (&interface.facets[slave as usize], own.centre, own.normal);
-            reach += farthest_master(part, interface, facet, (masters, &tree), settings.normal_orientation_threshold);
+            search_radius +=
+                farthest_master(part, interface, facet, (masters, &tree), settings.normal_orientation_threshold);
         }
-        let near = tree.meeting(&own.bounds.grown(reach));
+        let near = tree.meeting(&own.bounds.grown(search_radius));
         let found: Vec<Candidate> = near
             .into_iter()
             .map(|m| (masters[m as usize], &places[m as usize]))
@@ -121,7 +122,7 @@ pub(super) fn among(
             .filter_map(|(master, other)| {
                 let within_reach = match settings.distance {
                     SearchDistance::BetweenFacets | SearchDistance::BeyondFirst => true,
-                    SearchDistance::BetweenCentres => norm(sub(own.centre, other.centre)) <= reach,
+                    SearchDistance::BetweenCentres => norm(sub(own.centre, other.centre)) <= search_radius,
                 };
                 let meets = within_reach || own.bounds.grown(0.1 * own.radius).meets(&other.bounds);
                 meets.then_some(Candidate { slave, master, within_reach })

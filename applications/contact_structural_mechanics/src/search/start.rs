@@ -35,7 +35,7 @@ struct StartingNode {
 
 /// An interface before the first step.
 #[derive(Default)]
-pub struct Settled {
+pub struct StartingInterface {
     /// Message of nodes that were moved, or of a mistake.
     pub message: Option<Diagnostic>,
     /// Whether slave nodes lie inside the master by more than round-off, so that contact loads the bodies by itself.
@@ -54,9 +54,9 @@ pub fn settle(
     name: &str,
     tolerance: Option<f64>,
     refuses: bool,
-) -> Settled {
+) -> StartingInterface {
     if interface.open || part.info.step > 0 {
-        return Settled { message: None, overlaps: true };
+        return StartingInterface { message: None, overlaps: true };
     }
     find_nodal_h(part);
     let places = places(part, interface);
@@ -68,7 +68,7 @@ pub fn settle(
     } else {
         penetration(part, &places, name, refuses)
     };
-    Settled { message, overlaps }
+    StartingInterface { message, overlaps }
 }
 
 /// The warning of slave nodes that lie inside the other body, an error where `refuses` holds and one lies deeper than a mesh size.
@@ -177,8 +177,8 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<StartingNode> {
     let place = |at: usize| {
         let (node, normal) = nodes[at];
         let (x, size) = (part.nodes.current[node as usize], sizes[node as usize]);
-        let way = |reach: f64| {
-            let line = Bounds::of(&[add(x, scale(normal, -reach)), add(x, scale(normal, reach))]);
+        let way = |length: f64| {
+            let line = Bounds::of(&[add(x, scale(normal, -length)), add(x, scale(normal, length))]);
             let line = line.grown(ROUND_OFF * extent);
             let faces = |facet: &Facet, of_facet| dot(of_facet, normal) < -FACING && !facet.nodes.contains(&node);
             let met = met_along(part, (&tree, |at| masters[at as usize]), &line, (x, normal), faces);

@@ -12,7 +12,7 @@ use crate::interface::Interface;
 use crate::law::{Augmentation, NormalVariation, SlipRule, StepParameters};
 use crate::mortar::SegmentationSettings;
 use crate::pairs::Multiplier;
-use crate::resolution::Resolution;
+use crate::tolerances::Tolerances;
 use crate::variables::NODAL_H;
 
 /// Settings and numbers of contact in a model part.
@@ -24,7 +24,7 @@ pub(crate) struct Setup {
     /// Gap below which nodes and facets count as near, before factors (length).
     pub threshold: f64,
     /// Smallest lengths and tractions that decide in the present state.
-    pub resolution: Resolution,
+    pub tolerances: Tolerances,
 }
 
 impl Setup {
@@ -42,15 +42,15 @@ impl Setup {
             slip_rule: SlipRule::Pure,
             normal_variation: settings.normal_variation,
             augmentation: settings.augmentation,
-            compliant: settings.formulation.compliant,
+            regularised: settings.formulation.regularised,
             dynamic: false,
             nitsche: settings.nitsche,
         };
-        let (threshold, resolution) = (f64::INFINITY, Resolution::default());
-        Self { settings, parameters: Arc::new(parameters), threshold, resolution }
+        let (threshold, tolerances) = (f64::INFINITY, Tolerances::default());
+        Self { settings, parameters: Arc::new(parameters), threshold, tolerances }
     }
 
-    /// Finds penalty, scale factor and reach from the bodies behind the interfaces.
+    /// Finds penalty, scale factor and search radius from the bodies behind the interfaces.
     ///
     /// # Errors
     /// A coefficient of friction below zero.
@@ -66,7 +66,7 @@ impl Setup {
         Ok(())
     }
 
-    /// Meshes of very different sizes need a longer reach: both factors grow with the ratio of the sizes.
+    /// Meshes of very different sizes need a larger search radius: both factors grow with the ratio of the sizes.
     fn adapt_search(&mut self, part: &ModelPart) {
         if !self.settings.adapt_search {
             return;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::{Bound, Held, NodeState, StepParameters, Turning};
+use crate::law::{Bound, DirectionRotation, MultiplierConstraint, NodeState, StepParameters};
 
 /// One slave node.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -50,17 +50,17 @@ pub struct SlaveLawState {
     /// Tangential traction before the law of friction limits it; where points decide, their mean traction (force per area).
     pub trial: [f64; 3],
     /// Tangential traction carried from step to step, in formulations that do (force per area).
-    pub carried: [f64; 3],
+    pub history_traction: [f64; 3],
     /// Normal pressure that Uzawa's iteration keeps between updates, negative in compression (force per area).
-    pub kept_pressure: f64,
+    pub uzawa_pressure: f64,
     /// How supports hold each component of its multiplier; of a scalar one the first.
-    pub held: [Held; 3],
+    pub constraints: [MultiplierConstraint; 3],
     /// Weight of its multiplier's equation where that states a traction (force times area).
     pub multiplier_weight: f64,
     /// Unit tangent τ: the direction of sliding.
     pub tangent: [f64; 3],
     /// How that direction turns with the unknowns.
-    pub turning: Turning,
+    pub rotation: DirectionRotation,
     /// Whether points around it are in contact until the next solve, whatever their pressure.
     pub forced_active: bool,
     /// Whether points in contact around it stick until the next solve, whatever their traction.
@@ -88,7 +88,7 @@ pub struct Accepted {
     /// Weighted gap.
     pub weighted_gap: f64,
     /// History traction.
-    pub carried: [f64; 3],
+    pub history_traction: [f64; 3],
 }
 
 impl SlaveState {

@@ -34,7 +34,7 @@ pub struct SlaveColumns {
     /// Whether directions, slips and tractions of friction do.
     pub friction: bool,
     /// The column of tractions that are carried from step to step, in formulations that do.
-    pub carried: Option<&'static Variable<[f64; 3]>>,
+    pub history_traction: Option<&'static Variable<[f64; 3]>>,
 }
 
 /// The slave nodes of an interaction: where they stand, and which owners of unknowns they are.
@@ -232,7 +232,8 @@ impl SlaveStates {
     /// Step start: the last accepted state becomes the reference of the step.
     pub fn begin_step(&mut self) {
         for state in &mut self.states {
-            state.last = Accepted { weighted_gap: state.kinematics.weighted_gap, carried: state.law.carried };
+            state.last =
+                Accepted { weighted_gap: state.kinematics.weighted_gap, history_traction: state.law.history_traction };
         }
     }
 
@@ -287,10 +288,10 @@ impl SlaveStates {
             self.put(history.values_mut(&NORMAL, 0), NodalCombination::Direction, |state| state.kinematics.normal);
         }
         if let Some(field) = history.get_mut(KEPT_CONTACT_PRESSURE.name()) {
-            self.put(&mut field.levels[0], NodalCombination::Mean, |state| [state.law.kept_pressure]);
+            self.put(&mut field.levels[0], NodalCombination::Mean, |state| [state.law.uzawa_pressure]);
         }
-        if let Some(field) = self.columns.carried.and_then(|variable| history.get_mut(variable.name())) {
-            self.put(&mut field.levels[0], NodalCombination::Mean, |state| state.law.carried);
+        if let Some(field) = self.columns.history_traction.and_then(|variable| history.get_mut(variable.name())) {
+            self.put(&mut field.levels[0], NodalCombination::Mean, |state| state.law.history_traction);
         }
         if self.columns.friction {
             self.put(history.values_mut(&WEIGHTED_SLIP, 0), NodalCombination::Sum, |state| {
@@ -384,7 +385,8 @@ fn imported(nodes: &Nodes, at: usize, columns: SlaveColumns) -> SlaveState {
     let vector_of = |name: &str, level: usize| {
         history.get(name).map_or([0.0; 3], |field| field.vector(level.min(field.levels.len() - 1), at))
     };
-    let carried = |level| columns.carried.map_or([0.0; 3], |variable| vector_of(variable.name(), level));
+    let history_traction =
+        |level| columns.history_traction.map_or([0.0; 3], |variable| vector_of(variable.name(), level));
     SlaveState {
         kinematics: SlaveKinematics {
             isolated: nodes.flags.is(ISOLATED, at),
@@ -397,8 +399,8 @@ fn imported(nodes: &Nodes, at: usize, columns: SlaveColumns) -> SlaveState {
         law: SlaveLawState {
             active: nodes.flags.is(ACTIVE, at),
             slides: nodes.flags.get(SLIP, at),
-            carried: carried(0),
-            kept_pressure: past(KEPT_CONTACT_PRESSURE.name()),
+            history_traction: history_traction(0),
+            uzawa_pressure: past(KEPT_CONTACT_PRESSURE.name()),
             tangent: vector(values.values(&TANGENT_XI, 0)),
             pressure: scalar(&AUGMENTED_NORMAL_CONTACT_PRESSURE),
             traction: vector(values.values(&AUGMENTED_TANGENT_CONTACT_PRESSURE, 0)),
@@ -409,6 +411,6 @@ fn imported(nodes: &Nodes, at: usize, columns: SlaveColumns) -> SlaveState {
             dynamic_factor: scalar(&DYNAMIC_FACTOR),
             ..SlaveParameters::default()
         },
-        last: Accepted { carried: carried(1), ..Accepted::default() },
+        last: Accepted { history_traction: history_traction(1), ..Accepted::default() },
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, Request, StepView, Tangent};
 use zelus_core::geometry::{Nodal, Shape};
 use zelus_core::model::{EntityKind, Owner, ScalarVariable};
 
@@ -97,7 +97,7 @@ impl EntityBlock for TyingBlock {
         &self,
         view: &StepView<'_>,
         range: Range<usize>,
-        want: Want,
+        request: Request,
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         let mut values = Vec::with_capacity(self.unknowns.len());
@@ -113,7 +113,7 @@ impl EntityBlock for TyingBlock {
             }));
             let (lhs, rhs) = out.entity(slot);
             self.formulation.residual(&self.operators[at], &values, rhs);
-            if want == Want::Both {
+            if request == Request::Both {
                 self.formulation.tangent(&self.operators[at], lhs);
             }
         }

@@ -7,14 +7,14 @@ use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Coupling, EntityBlock, Interaction, Join, PairState, require_kind};
 use zelus_core::model::flags::ACTIVE;
-use zelus_core::model::{Carriers, MasterSlaveConstraint, ModelPart, Role, ScalarVariable};
+use zelus_core::model::{DofOwners, EntityRole, MasterSlaveConstraint, ModelPart, ScalarVariable};
 use zelus_core::parameters::Interval;
 use zelus_core::vector3::norm;
-use zelus_core::{Carrier, Result, State};
+use zelus_core::{Result, State, StateMapper};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::tying_block::{TyingBlock, TyingRequest};
-use crate::active_set::{FacetsOfPair, Holding};
+use crate::active_set::{FacetsOfPair, SupportedNodes};
 use crate::flags::CONTACT;
 use crate::interface::{
     Fixed, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex, add_contact_part, alm_parameters,
@@ -77,7 +77,7 @@ pub struct TyingInteraction {
     keys: Vec<Vec<PairKey>>,
     scale_factor: f64,
     graph: u64,
-    holding: Holding,
+    supported_nodes: SupportedNodes,
     /// Changes with the constraints on multipliers.
     constrained: u64,
     steps_since_search: Option<usize>,
@@ -92,7 +92,7 @@ struct SavedTie {
     pairs: BTreeMap<PairKey, FacetOperators>,
     /// Whether the tie holds now.
     holds: bool,
-    holding: Holding,
+    supported_nodes: SupportedNodes,
     graph: u64,
     constrained: u64,
     steps_since_search: Option<usize>,
@@ -100,8 +100,8 @@ struct SavedTie {
 
 #[typetag::serde(name = "mesh_tying")]
 impl State for SavedTie {
-    fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.holding.carry(carrier);
+    fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        self.supported_nodes.remap(mapper);
     }
 }
 
@@ -127,7 +127,7 @@ impl TyingInteraction {
             keys: Vec::new(),
             scale_factor: 1.0,
             graph: 1,
-            holding: Holding::default(),
+            supported_nodes: SupportedNodes::default(),
             constrained: 0,
             steps_since_search: None,
             surfaces: InterfaceSurfaces::default(),
@@ -136,7 +136,7 @@ impl TyingInteraction {
 
     fn search(&mut self, part: &mut ModelPart) {
         let all = NormalPatches::new(part.nodes.len(), &self.interfaces, NodalNormals::ByFacets);
-        all.on_planes(self.holding.planes().clone()).write(part);
+        all.on_planes(self.supported_nodes.planes().clone()).write(part);
         self.normals = self.present_normals(part);
         let known = |key: &PairKey| self.pairs.contains_key(key);
         let normals = |key: PairKey, local: usize| self.normals[self.slaves_of(key)[local].place()];
@@ -172,7 +172,7 @@ impl TyingInteraction {
     /// Normals of the slave nodes in the present configuration.
     fn present_normals(&self, part: &ModelPart) -> Vec<[f64; 3]> {
         let patches = NormalPatches::of_slaves(&self.patches, &self.interfaces, NodalNormals::ByFacets);
-        let patches = patches.on_planes(self.holding.planes().clone());
+        let patches = patches.on_planes(self.supported_nodes.planes().clone());
         let unit = |sum: [f64; 3]| {
             let size = norm(sum);
             sum.map(|x| if size > 0.0 { x / size } else { 0.0 })
@@ -203,7 +203,7 @@ impl TyingInteraction {
             let owners = slaves.map(|slave| self.table.owners[slave.place()]).collect();
             let name = condition_name("MeshTyingMortarCondition", slave, master);
             let request = TyingRequest {
-                entry: require_kind(Role::Condition, &name)?,
+                entry: require_kind(EntityRole::Condition, &name)?,
                 pairs,
                 nodes,
                 owners,
@@ -245,10 +245,11 @@ impl TyingInteraction {
             master: facet(key.interface, key.master),
         });
         let normal = |slave: SlaveIndex| self.normals.get(slave.place()).copied().unwrap_or([0.0; 3]);
-        let held = if self.blocks.is_empty() { BTreeMap::new() } else { self.holding.nodes(part, &normal, pairs) };
+        let supported =
+            if self.blocks.is_empty() { BTreeMap::new() } else { self.supported_nodes.nodes(part, &normal, pairs) };
         let mut dropped: BTreeMap<u32, Fixed> = BTreeMap::new();
         let mut new = Vec::new();
-        for (&slave, how) in &held {
+        for (&slave, how) in &supported {
             let node = self.patches.mesh_node(slave);
             for (&multiplier, tied) in unknowns.iter().zip(&self.settings.tied) {
                 let Some(c) = tied.component.map(usize::from).filter(|&c| how.components[c]) else { continue };
@@ -258,10 +259,13 @@ impl TyingInteraction {
                 let masters = if how.symmetric {
                     Vec::new()
                 } else {
-                    self.neighbours(slave, |n| !held.get(&n).is_some_and(|other| other.components[c]))
+                    self.neighbours(slave, |n| !supported.get(&n).is_some_and(|other| other.components[c]))
                 };
                 let weight = 1.0 / masters.len().max(1) as f64;
-                if masters.is_empty() && !how.symmetric && self.ties_free_masters(slave, |n| self.holding.fixes(n, c)) {
+                if masters.is_empty()
+                    && !how.symmetric
+                    && self.ties_free_masters(slave, |n| self.supported_nodes.fixes(n, c))
+                {
                     continue;
                 }
                 let masters = masters.into_iter().map(|n| ((self.patches.mesh_node(n), multiplier), weight)).collect();
@@ -273,7 +277,7 @@ impl TyingInteraction {
         self.constrained += u64::from(old != new);
         constraints.extend(new);
         part.constraints = constraints;
-        self.messages.extend(self.holding.say(part, &dropped, false));
+        self.messages.extend(self.supported_nodes.say(part, &dropped, false));
     }
 
     /// Name of the sets of its slave nodes: that of the parts of its pairs.
@@ -379,7 +383,7 @@ impl Interaction for TyingInteraction {
             return Ok(());
         }
         if self.settings.mind_supports {
-            self.holding.begin_step(part, &self.interfaces);
+            self.supported_nodes.begin_step(part, &self.interfaces);
         }
         let due = self.steps_since_search.is_none_or(|steps| steps + 1 >= self.settings.database_step_update);
         let before = self.pairs.len();
@@ -405,7 +409,7 @@ impl Interaction for TyingInteraction {
         Ok(())
     }
 
-    fn accept_step(&mut self, part: &mut ModelPart) -> Result<()> {
+    fn finalize_step(&mut self, part: &mut ModelPart) -> Result<()> {
         multiplier_columns::export(part, &self.table, &|_| 0.0, self.settings.formulation.multiplier);
         self.write_surfaces(part);
         Ok(())
@@ -415,7 +419,7 @@ impl Interaction for TyingInteraction {
         Some(Box::new(SavedTie {
             pairs: self.pairs.clone(),
             holds: !self.blocks.is_empty(),
-            holding: self.holding.clone(),
+            supported_nodes: self.supported_nodes.clone(),
             graph: self.graph,
             constrained: self.constrained,
             steps_since_search: self.steps_since_search,
@@ -423,10 +427,10 @@ impl Interaction for TyingInteraction {
     }
 
     fn resume(&mut self, part: &mut ModelPart, state: Box<dyn State>) -> Result<()> {
-        let SavedTie { pairs, holds, holding, graph, constrained, steps_since_search } = state.take()?;
+        let SavedTie { pairs, holds, supported_nodes, graph, constrained, steps_since_search } = state.take()?;
         check_pairs(&self.interfaces, pairs.keys().copied())?;
-        holding.check(part.nodes.len())?;
-        (self.pairs, self.holding, self.steps_since_search) = (pairs, holding, steps_since_search);
+        supported_nodes.check(part.nodes.len())?;
+        (self.pairs, self.supported_nodes, self.steps_since_search) = (pairs, supported_nodes, steps_since_search);
         if holds {
             self.make_blocks(part)?;
         }
@@ -467,10 +471,10 @@ impl Interaction for TyingInteraction {
 }
 
 impl Coupling for TyingInteraction {
-    fn unknowns(&self, part: &ModelPart) -> Vec<Carriers> {
+    fn unknowns(&self, part: &ModelPart) -> Vec<DofOwners> {
         let unknowns = self.settings.formulation.multiplier.unknowns(part.info.domain_size);
         let owners = &self.table.owners;
-        unknowns.into_iter().map(|variable| Carriers::of_slaves(variable, owners.iter().copied())).collect()
+        unknowns.into_iter().map(|variable| DofOwners::of_slaves(variable, owners.iter().copied())).collect()
     }
 
     fn blocks(&self) -> Vec<&dyn EntityBlock> {
@@ -489,7 +493,7 @@ impl Coupling for TyingInteraction {
         self.graph
     }
 
-    fn idle_diagonal(&self) -> f64 {
+    fn inactive_diagonal(&self) -> f64 {
         self.scale_factor
     }
 

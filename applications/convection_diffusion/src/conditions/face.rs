@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{
-    BlockRequest, Build, ConditionEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+    BlockRequest, Build, ConditionEntry, EntityView, Kernel, KernelBlock, LocalUnknown, Request, StepView, Tangent,
 };
 use zelus_core::geometry::{Shape, ShapeTable, mapping};
 use zelus_core::model::Properties;
@@ -91,7 +91,7 @@ impl<const EXCHANGES: bool, const RING: bool, const DIM: usize, const NODES: usi
         Ok(Self { columns: Columns::of(request.part), rule: ShapeTable::get(shape, order) })
     }
 
-    fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+    fn state(&self, entity: &EntityView<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
         match mapping::domain_size(self.rule.shape(), &entity.current) > 0.0 {
             true => Ok(()),
             false => Err("it has no size".to_owned()),
@@ -104,10 +104,10 @@ impl<const EXCHANGES: bool, const RING: bool, const DIM: usize, const NODES: usi
 
     fn local_system(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         (): &(),
         view: &StepView<'_>,
-        _want: Want,
+        _request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; NODES],
     ) -> Result<(), String> {

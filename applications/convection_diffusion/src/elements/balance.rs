@@ -71,7 +71,7 @@ impl Step {
 
 /// Data of a point that do not depend on its temperature.
 #[derive(Clone, Copy)]
-pub struct Point<'a, const NODES: usize> {
+pub struct BalancePoint<'a, const NODES: usize> {
     /// Step, with the weights of its ends.
     pub step: Step,
     /// Shape functions.
@@ -110,7 +110,7 @@ pub(super) fn round(radius: Option<f64>) -> f64 {
     radius.map_or(1.0, |radius| 2.0 * PI * radius)
 }
 
-impl<const NODES: usize> Point<'_, NODES> {
+impl<const NODES: usize> BalancePoint<'_, NODES> {
     /// Factor of volumes: the circumference around the axis.
     pub fn round(&self) -> f64 {
         round(self.radius)
@@ -131,7 +131,7 @@ impl<const NODES: usize> Point<'_, NODES> {
     }
 }
 
-impl<const NODES: usize> Pointwise for Point<'_, NODES> {
+impl<const NODES: usize> Pointwise for BalancePoint<'_, NODES> {
     fn balance<R: Real>(&self, temperature: R, gradient: [R; 3]) -> (R, [R; 3]) {
         let Self { step, old, old_gradient, velocity, .. } = *self;
         let (end, begin) = (step.theta, 1.0 - step.theta);

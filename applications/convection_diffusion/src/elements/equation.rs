@@ -6,15 +6,15 @@
 use std::marker::PhantomData;
 
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{BlockRequest, EntityView, Kernel, LocalUnknown, Request, StepView, Tangent};
 use zelus_core::geometry::{Shape, ShapeTable};
 use zelus_structural_mechanics::elements::physical_gradients;
 
-use super::balance::{Point, Step, radial, round};
+use super::balance::{BalancePoint, Step, radial, round};
 use super::contribution::{add, slope};
 use super::marks::{AT_CENTRE, PURE_CONVECTION};
 use super::place::{check_volume, full_order, stream_size};
-use super::plastic_heat::{PLASTIC_HEAT_POWER, plastic_heat, volume};
+use super::plastic_heat_source::{PLASTIC_HEAT_POWER, plastic_heat, volume};
 use crate::coefficient::Local;
 use crate::columns::{Columns, nodal, velocities};
 use crate::material::Material;
@@ -24,7 +24,7 @@ pub trait Terms: Send + Sync + 'static {
     /// Storage and convection.
     const TRANSIENT: bool;
     /// The value at the beginning of the step is the advected one; both ends of the step have weight 1/2.
-    const CARRIED: bool = false;
+    const ADVECTED: bool = false;
     /// A body of revolution about the x axis, beside a structure about the y axis.
     const AXISYMMETRIC: bool = false;
 }
@@ -71,7 +71,7 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
         })
     }
 
-    fn state(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Result<(), String> {
+    fn state(&self, entity: &EntityView<'_, NODES>, view: &StepView<'_>) -> Result<(), String> {
         check_volume::<NODES, DIM>(self.rule, &entity.current)?;
         let radial = radial(view.info);
         if T::AXISYMMETRIC && entity.current.iter().any(|x| x[radial] < 0.0) {
@@ -82,7 +82,7 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
     }
 
     fn tangent(&self) -> Tangent {
-        if self.material.varies() || T::TRANSIENT && !T::CARRIED { Tangent::General } else { Tangent::Symmetric }
+        if self.material.varies() || T::TRANSIENT && !T::ADVECTED { Tangent::Unsymmetric } else { Tangent::Symmetric }
     }
 
     fn has_external(&self, view: &StepView<'_>) -> bool {
@@ -95,38 +95,38 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
 
     fn local_system(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         (): &(),
         view: &StepView<'_>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; NODES],
     ) -> Result<(), String> {
         let mut step = Step::of(view.info);
-        if T::CARRIED {
+        if T::ADVECTED {
             step.theta = 0.5;
         } else if !T::TRANSIENT {
             step.theta = 1.0;
         }
         let unknown = self.columns.unknown.column;
         let now = nodal(entity, view, Some(unknown), 0);
-        let old = match T::CARRIED {
+        let old = match T::ADVECTED {
             true => nodal(entity, view, Some("PROJECTED_SCALAR1"), 0),
             false => nodal(entity, view, Some(unknown), 1),
         };
         let source = nodal(entity, view, self.columns.volume_source, 0);
-        let velocity = match T::TRANSIENT && !T::CARRIED {
+        let velocity = match T::TRANSIENT && !T::ADVECTED {
             true => velocities(entity, view, &self.columns, step.theta),
             false => [[0.0; 3]; NODES],
         };
         let [mut conductivity, density, specific_heat] = self.material.in_element(entity, view, &now);
-        if T::CARRIED && view.info.has(PURE_CONVECTION) {
+        if T::ADVECTED && view.info.has(PURE_CONVECTION) {
             conductivity = Local::Nodal([0.0; NODES]);
         } else {
             self.material.check_conductivity(entity, &conductivity)?;
         }
         let size = stream_size(self.rule.shape(), &entity.current);
-        let is_centred = view.info.has(AT_CENTRE) && T::TRANSIENT && !T::CARRIED && !T::AXISYMMETRIC;
+        let is_centred = view.info.has(AT_CENTRE) && T::TRANSIENT && !T::ADVECTED && !T::AXISYMMETRIC;
         let at_centre = is_centred.then(|| self.at_centre(&entity.current));
         let radial = radial(view.info);
         let radius =
@@ -142,7 +142,7 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
             let (dn, weight) = at_centre.unwrap_or((dn, weight));
             let value = |at: &[f64; NODES]| n.iter().zip(at).map(|(n, value)| n * value).sum::<f64>();
             let part = |a: usize| (0..NODES).map(|i| n[i] * velocity[i][a]).sum();
-            let point = Point {
+            let point = BalancePoint {
                 step,
                 n,
                 conductivity: &conductivity,
@@ -158,10 +158,10 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
                 radial,
             };
             let weight = weight * point.round();
-            let apart = match want {
-                Want::External => Some(point.source),
-                Want::Storage => Some(-point.stored(value(&now))),
-                Want::Residual | Want::Both => None,
+            let apart = match request {
+                Request::External => Some(point.source),
+                Request::Storage => Some(-point.stored(value(&now))),
+                Request::Residual | Request::Both => None,
             };
             if let Some(apart) = apart {
                 (0..NODES).for_each(|i| rhs[i] += weight * n[i] * apart);

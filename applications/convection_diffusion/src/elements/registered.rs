@@ -5,7 +5,7 @@ use zelus_core::geometry::Shape;
 use zelus_core::register;
 
 use super::equation::{Equation, Terms};
-use super::explicit::{Explicit, Subscales};
+use super::explicit_element::{Explicit, Subscales};
 
 /// Storage, convection, conduction and sources.
 pub struct ConvectionDiffusion;
@@ -26,7 +26,7 @@ pub struct Diffusion;
 
 impl Terms for Diffusion {
     const TRANSIENT: bool = true;
-    const CARRIED: bool = true;
+    const ADVECTED: bool = true;
 }
 
 /// [`ConvectionDiffusion`] of a body of revolution.

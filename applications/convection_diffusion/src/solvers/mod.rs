@@ -1,9 +1,9 @@
 //! The solvers of heat, by `solver_type`.
 
-mod explicit;
-mod stationary;
+mod explicit_solver;
+mod stationary_solver;
 mod thermo_mechanically_coupled;
-mod transient;
+mod transient_solver;
 
 use zelus_core::analysis::NodalVariable;
 use zelus_core::diagnostics::{Report, Result};

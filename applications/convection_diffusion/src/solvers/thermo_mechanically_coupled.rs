@@ -6,15 +6,22 @@ use zelus_core::parameters::{Node, Object, Value};
 use zelus_core::register;
 
 use crate::coupling::EXTENSION;
+use crate::coupling_settings;
 use crate::scheme::SCHEME;
-use crate::way;
 
 /// The object with the settings of the structure.
 const STRUCTURE: &str = "structural_solver_settings";
 
 /// Keys of the solver; those of the two within are theirs.
-const KEYS: [&str; 7] =
-    ["solver_type", "domain_size", "echo_level", STRUCTURE, EXTENSION, way::SETTINGS, "time_integration_method"];
+const KEYS: [&str; 7] = [
+    "solver_type",
+    "domain_size",
+    "echo_level",
+    STRUCTURE,
+    EXTENSION,
+    coupling_settings::SETTINGS,
+    "time_integration_method",
+];
 
 /// Makes the structure's settings those of the solver, with the ones of heat inside, and names all parts by the structure's root.
 fn unfold(deck: &mut Node) -> Result<()> {
@@ -32,12 +39,12 @@ fn unfold(deck: &mut Node) -> Result<()> {
     let (structure, heat) = (name(STRUCTURE, "Structure")?, name(EXTENSION, "ThermalModelPart")?);
     let Value::Object(top) = &mut deck.value else { return Ok(()) };
     let Some(Node { value: Value::Object(members), .. }) = top.get_mut("solver_settings") else { return Ok(()) };
-    let coupling = members.remove(way::SETTINGS);
+    let coupling = members.remove(coupling_settings::SETTINGS);
     let (Some(mut own), Some(of_heat)) = (members.remove(STRUCTURE), members.remove(EXTENSION)) else { return Ok(()) };
     // Other programs have defaults for it, which apply below the present settings.
     let mut nothing = of_heat.node.clone();
     nothing.value = Value::Object(Object::default());
-    own.node.set_path(way::SETTINGS, coupling.map_or(nothing, |coupling| coupling.node))?;
+    own.node.set_path(coupling_settings::SETTINGS, coupling.map_or(nothing, |coupling| coupling.node))?;
     if let Value::Object(members) = &mut own.node.value {
         members.insert(of_heat);
     }

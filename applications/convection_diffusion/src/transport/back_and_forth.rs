@@ -10,7 +10,7 @@ use zelus_core::parallel;
 use zelus_core::vector3::{add, scale};
 
 use super::locator::{Locator, Place};
-use super::whole::Whole;
+use super::whole_mesh::WholeMesh;
 
 /// Nodes of a task.
 const NODES: usize = 64;
@@ -55,14 +55,14 @@ impl Paths<'_> {
 
 /// Values after a step of the nodes that this rank owns, from those of all nodes before it. A node whose path back leaves the mesh has the
 /// value where it left; one that begins outside keeps its own. Collective.
-pub fn carried(
+pub fn advected(
     part: &ModelPart,
-    whole: &Whole,
+    whole: &WholeMesh,
     locator: &Locator<'_>,
     paths: &Paths<'_>,
     values: &[[f64; 1]],
 ) -> Vec<[f64; 1]> {
-    let own: Vec<usize> = whole.own.iter().map(|&node| Whole::place(part, node)).collect();
+    let own: Vec<usize> = whole.own.iter().map(|&node| WholeMesh::place(part, node)).collect();
     let back: Vec<(usize, End<'_>)> =
         parallel::map(own.len(), NODES, |at| (own[at], paths.follow(locator, own[at], -1.0)));
     let there: Vec<[f64; 1]> =

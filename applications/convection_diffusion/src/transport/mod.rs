@@ -3,9 +3,9 @@
 mod back_and_forth;
 mod locator;
 mod mesh;
-mod whole;
+mod whole_mesh;
 
-pub use back_and_forth::{Paths, carried};
+pub use back_and_forth::{Paths, advected};
 pub use locator::Locator;
 pub use mesh::Mesh;
-pub use whole::Whole;
+pub use whole_mesh::WholeMesh;

@@ -1,7 +1,7 @@
 //! Boundaries without load: they name a piece of the boundary for searches and output, and bring no unknowns.
 
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{BlockRequest, EntityView, Kernel, LocalUnknown, Request, StepView, Tangent};
 
 use super::load::register_conditions;
 
@@ -19,7 +19,7 @@ impl<const NODES: usize> Kernel<NODES, 0> for GeometryOnly {
         Ok(Self)
     }
 
-    fn state(&self, _entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+    fn state(&self, _entity: &EntityView<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
         Ok(())
     }
 
@@ -29,10 +29,10 @@ impl<const NODES: usize> Kernel<NODES, 0> for GeometryOnly {
 
     fn local_system(
         &self,
-        _entity: &Gather<'_, NODES>,
+        _entity: &EntityView<'_, NODES>,
         _state: &(),
         _view: &StepView<'_>,
-        _want: Want,
+        _request: Request,
         _lhs: &mut [f64],
         _rhs: &mut [f64; 0],
     ) -> Result<(), String> {

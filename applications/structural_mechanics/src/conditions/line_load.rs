@@ -7,7 +7,7 @@
 
 use std::f64::consts::PI;
 
-use zelus_core::entities::{Gather, StepView};
+use zelus_core::entities::{EntityView, StepView};
 use zelus_core::geometry::ShapeTable;
 
 use super::load::{
@@ -37,7 +37,13 @@ impl<const AXISYMMETRIC: bool, const NODES: usize, const SIZE: usize> Distribute
     const CELL: usize = 1;
     const SPACE: usize = 2;
 
-    fn add(rule: &ShapeTable, entity: &Gather<'_, NODES>, view: &StepView<'_>, lhs: &mut [f64], rhs: &mut [f64; SIZE]) {
+    fn add(
+        rule: &ShapeTable,
+        entity: &EntityView<'_, NODES>,
+        view: &StepView<'_>,
+        lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    ) {
         let q = vector_load(entity, view, &LINE_LOAD);
         let p = pressure(entity, view);
         let pressed = p.iter().any(|p| *p != 0.0);
@@ -92,7 +98,13 @@ impl<const NODES: usize, const SIZE: usize> DistributedLoad<NODES, SIZE> for Spa
     const CELL: usize = 1;
     const SPACE: usize = 3;
 
-    fn add(rule: &ShapeTable, entity: &Gather<'_, NODES>, view: &StepView<'_>, lhs: &mut [f64], rhs: &mut [f64; SIZE]) {
+    fn add(
+        rule: &ShapeTable,
+        entity: &EntityView<'_, NODES>,
+        view: &StepView<'_>,
+        lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    ) {
         let q = vector_load(entity, view, &LINE_LOAD);
         for g in 0..rule.len() {
             let (n, dn) = (&rule.n::<NODES>()[g], &rule.dn::<NODES, 1>()[g]);

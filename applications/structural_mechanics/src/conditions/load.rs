@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{BlockRequest, EntityView, Kernel, LocalUnknown, Request, StepView, Tangent};
 use zelus_core::geometry::{Shape, ShapeTable, mapping};
 use zelus_core::model::Variable;
 
@@ -17,7 +17,13 @@ pub trait DistributedLoad<const NODES: usize, const SIZE: usize>: 'static {
     const SPACE: usize;
 
     /// Adds the forces, and minus their derivative when `lhs` is not empty.
-    fn add(rule: &ShapeTable, entity: &Gather<'_, NODES>, view: &StepView<'_>, lhs: &mut [f64], rhs: &mut [f64; SIZE]);
+    fn add(
+        rule: &ShapeTable,
+        entity: &EntityView<'_, NODES>,
+        view: &StepView<'_>,
+        lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    );
 }
 
 /// The kernel of a distributed load, with a Gauss rule one order above the shape's; `STILL` on the initial geometry, for small
@@ -50,7 +56,7 @@ where
         Ok(Self { rule, still: STILL || request.on_initial, load: PhantomData })
     }
 
-    fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
+    fn state(&self, entity: &EntityView<'_, NODES>, _view: &StepView<'_>) -> Result<(), String> {
         match mapping::domain_size(self.rule.shape(), &entity.initial) > 0.0 {
             true => Ok(()),
             false => Err("it has no size, so that nothing is loaded by it".to_owned()),
@@ -58,20 +64,20 @@ where
     }
 
     fn tangent(&self) -> Tangent {
-        if self.still { Tangent::Zero } else { Tangent::General }
+        if self.still { Tangent::Zero } else { Tangent::Unsymmetric }
     }
 
     fn local_system(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         _state: &(),
         view: &StepView<'_>,
-        _want: Want,
+        _request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) -> Result<(), String> {
         if self.still {
-            let still = Gather { current: entity.initial, ..*entity };
+            let still = EntityView { current: entity.initial, ..*entity };
             L::add(self.rule, &still, view, &mut [], rhs);
         } else {
             L::add(self.rule, entity, view, lhs, rhs);
@@ -87,7 +93,7 @@ pub(super) fn displacements<const SIZE: usize>(dim: usize) -> [LocalUnknown; SIZ
 
 /// Vector load at each node: that of the condition plus that of the node.
 pub(super) fn vector_load<const NODES: usize>(
-    entity: &Gather<'_, NODES>,
+    entity: &EntityView<'_, NODES>,
     view: &StepView<'_>,
     variable: &Variable<[f64; 3]>,
 ) -> [[f64; 3]; NODES] {
@@ -105,7 +111,7 @@ pub(super) fn vector_load<const NODES: usize>(
 
 /// Pressure at each node: PRESSURE + NEGATIVE_FACE_PRESSURE − POSITIVE_FACE_PRESSURE of the condition, plus negative
 /// minus positive pressure of the node.
-pub(super) fn pressure<const NODES: usize>(entity: &Gather<'_, NODES>, view: &StepView<'_>) -> [f64; NODES] {
+pub(super) fn pressure<const NODES: usize>(entity: &EntityView<'_, NODES>, view: &StepView<'_>) -> [f64; NODES] {
     let own = |variable| view.conditions.data.values(variable, 0).get(entity.index as usize).copied().unwrap_or(0.0);
     let mut out = [own(&PRESSURE) + own(&NEGATIVE_FACE_PRESSURE) - own(&POSITIVE_FACE_PRESSURE); NODES];
     for (variable, sign) in [(&NEGATIVE_FACE_PRESSURE, 1.0), (&POSITIVE_FACE_PRESSURE, -1.0)] {
@@ -125,7 +131,7 @@ pub(super) fn counts_stretch(view: &StepView<'_>) -> bool {
 }
 
 /// THICKNESS of the condition's properties, 1 when not given.
-pub(super) fn thickness<const NODES: usize>(entity: &Gather<'_, NODES>) -> f64 {
+pub(super) fn thickness<const NODES: usize>(entity: &EntityView<'_, NODES>) -> f64 {
     entity.properties.number("THICKNESS").unwrap_or(1.0)
 }
 

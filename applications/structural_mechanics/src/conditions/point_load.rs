@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{BlockRequest, Gather, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{BlockRequest, EntityView, Kernel, LocalUnknown, Request, StepView, Tangent};
 
 use super::load::{displacements, register_conditions, thickness, vector_load};
 use crate::variables::POINT_LOAD;
@@ -22,7 +22,7 @@ impl<const AXISYMMETRIC: bool, const SIZE: usize> Kernel<1, SIZE> for PointLoad<
         Ok(Self)
     }
 
-    fn state(&self, _entity: &Gather<'_, 1>, _view: &StepView<'_>) -> Result<(), String> {
+    fn state(&self, _entity: &EntityView<'_, 1>, _view: &StepView<'_>) -> Result<(), String> {
         Ok(())
     }
 
@@ -32,10 +32,10 @@ impl<const AXISYMMETRIC: bool, const SIZE: usize> Kernel<1, SIZE> for PointLoad<
 
     fn local_system(
         &self,
-        entity: &Gather<'_, 1>,
+        entity: &EntityView<'_, 1>,
         _state: &(),
         view: &StepView<'_>,
-        _want: Want,
+        _request: Request,
         _lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) -> Result<(), String> {

@@ -4,7 +4,7 @@
 //! K_ij = ∫ N_i (p (N_j,ξ [t_2]× − N_j,η [t_1]×) − q ⊗ (N_j,ξ t_2 × n̂ + N_j,η n̂ × t_1)) dξ dη with [a]× v = a × v and
 //! n̂ = n/|n|: the second part is the stretch of the area on which q acts.
 
-use zelus_core::entities::{Gather, StepView};
+use zelus_core::entities::{EntityView, StepView};
 use zelus_core::geometry::ShapeTable;
 use zelus_core::vector3::{cross, norm, scale};
 
@@ -20,7 +20,13 @@ impl<const NODES: usize, const SIZE: usize> DistributedLoad<NODES, SIZE> for Sur
     const CELL: usize = 2;
     const SPACE: usize = 3;
 
-    fn add(rule: &ShapeTable, entity: &Gather<'_, NODES>, view: &StepView<'_>, lhs: &mut [f64], rhs: &mut [f64; SIZE]) {
+    fn add(
+        rule: &ShapeTable,
+        entity: &EntityView<'_, NODES>,
+        view: &StepView<'_>,
+        lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    ) {
         let q = vector_load(entity, view, &SURFACE_LOAD);
         let p = pressure(entity, view);
         let pressed = p.iter().any(|p| *p != 0.0);

@@ -1,12 +1,12 @@
 use zelus_core::entities::find_kind;
 use zelus_core::geometry::{Shape, mapping};
-use zelus_core::model::{Role, Variable};
+use zelus_core::model::{EntityRole, Variable};
 
 use crate::test_model::{Random, Single, Vec3, near, reference_cell, size, weighted};
 use crate::variables::*;
 
 fn condition(name: &str, x: &[Vec3]) -> Single {
-    Single::new(Role::Condition, name, None, &[("THICKNESS", 0.5)], x)
+    Single::new(EntityRole::Condition, name, None, &[("THICKNESS", 0.5)], x)
 }
 
 fn set(single: &mut Single, variable: &Variable<f64>, value: f64) {
@@ -120,7 +120,7 @@ fn forces_agree_with_the_reference_program() {
     for line in include_str!("reference_loads.txt").lines().filter(|line| !line.starts_with('#')) {
         let (name, expected) = line.split_once(' ').unwrap();
         let expected: f64 = expected.parse().unwrap();
-        let entry = find_kind(Role::Condition, name).unwrap();
+        let entry = find_kind(EntityRole::Condition, name).unwrap();
         let shape = entry.cell.unwrap();
         let (x, u) = reference_cell(shape, entry.space);
         let mut single = condition(name, &x);

@@ -1,6 +1,6 @@
 //! Gradients of shape functions, and columns of the nodes of an entity, as elements read them.
 
-use zelus_core::entities::{Gather, LocalUnknown, StepView};
+use zelus_core::entities::{EntityView, LocalUnknown, StepView};
 use zelus_core::model::Variable;
 
 use crate::tensor::{IDENTITY, Tensor, inverse, pairs};
@@ -65,7 +65,7 @@ pub(super) fn strain_rows<const DIM: usize, const S: usize>(f: &Tensor, dn: &[f6
 
 /// Three numbers a node of a column, zeros when nothing has added it.
 pub(super) fn nodal_vectors<const NODES: usize>(
-    entity: &Gather<'_, NODES>,
+    entity: &EntityView<'_, NODES>,
     view: &StepView<'_>,
     variable: &Variable<[f64; 3]>,
 ) -> [[f64; 3]; NODES] {

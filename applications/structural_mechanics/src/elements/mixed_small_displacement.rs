@@ -12,7 +12,7 @@
 //! with plastic flow (in the reference program it follows the law's matrix), and inertia stays out of it.
 
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::Want;
+use zelus_core::entities::Request;
 
 use super::gradients::{gradient, padded, strain_rows};
 use super::mixed_volumetric_strain::{Matter, Place, Values, VolumetricForm, register_mixed};
@@ -75,7 +75,7 @@ impl VolumetricForm for MixedSmallDisplacement {
         values: &Values<NODES>,
         matter: &Matter<'_, DIM, S>,
         state: &StrainState<'_, S>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) {
@@ -88,7 +88,7 @@ impl VolumetricForm for MixedSmallDisplacement {
                 rhs[i * step + DIM] += at.weight * bulk * tau_1 * dn[a] * matter.body[a];
             }
         }
-        if want == Want::External {
+        if request == Request::External {
             return;
         }
         let theta = excess(at, values);

@@ -14,7 +14,7 @@
 //! the same.)
 
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::Want;
+use zelus_core::entities::Request;
 
 use super::gradients::{gradient, padded, strain_rows};
 use super::mixed_volumetric_strain::{Matter, Place, Values, VolumetricForm, register_mixed};
@@ -29,13 +29,13 @@ const TAU_THETA: f64 = 0.1;
 pub struct MixedTotalLagrangian;
 
 /// Deformation of a point by its displacements, and θ.
-struct Motion {
+struct MixedDeformation {
     f: Tensor,
     j: f64,
     theta: f64,
 }
 
-impl Motion {
+impl MixedDeformation {
     fn new<const NODES: usize, const DIM: usize>(at: &Place<'_, NODES, DIM>, values: &Values<NODES>) -> Self {
         let mut f = gradient(&values.u, &at.dn);
         (0..DIM).for_each(|a| f[a][a] += 1.0);
@@ -62,7 +62,7 @@ impl VolumetricForm for MixedTotalLagrangian {
         _law: &dyn ConstitutiveLaw<S>,
         history: &'a [f64],
     ) -> Result<StrainState<'a, S>, String> {
-        let motion = Motion::new(at, values);
+        let motion = MixedDeformation::new(at, values);
         for (name, volume) in [("det F", motion.j), ("1 + VOLUMETRIC_STRAIN", 1.0 + motion.theta)] {
             if volume <= 0.0 || volume.is_nan() {
                 return Err(format!("turned inside out at Gauss point {} ({name} = {volume:.3e})", at.g + 1));
@@ -80,14 +80,14 @@ impl VolumetricForm for MixedTotalLagrangian {
         values: &Values<NODES>,
         matter: &Matter<'_, DIM, S>,
         state: &StrainState<'_, S>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) {
         let (step, bulk, weight) = (DIM + 1, matter.bulk, at.weight);
         let tau_u = matter.size * matter.size / matter.shear;
         let tau_theta = TAU_THETA * matter.shear / (matter.shear + bulk);
-        let motion = Motion::new(at, values);
+        let motion = MixedDeformation::new(at, values);
         let (f, j, theta) = (&motion.f, motion.j, motion.theta);
         let back = inverse(f);
         let h = at.dn.map(|dn| -> [f64; DIM] {
@@ -97,7 +97,7 @@ impl VolumetricForm for MixedTotalLagrangian {
             (0..DIM).for_each(|a| rhs[i * step + a] += weight * at.n[i] * matter.body[a]);
             rhs[i * step + DIM] += weight * bulk * tau_u * dot(&h[i], &matter.body);
         }
-        if want == Want::External {
+        if request == Request::External {
             return;
         }
         let mut d = [[0.0; S]; S];

@@ -8,7 +8,9 @@
 use std::marker::PhantomData;
 
 use zelus_core::diagnostics::{Diagnostic, Result};
-use zelus_core::entities::{AssumedSmall, BlockRequest, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want};
+use zelus_core::entities::{
+    AssumedSmall, BlockRequest, EntityView, Gauss, Kernel, LocalUnknown, Request, StepView, Tangent,
+};
 use zelus_core::geometry::{Shape, ShapeTable};
 
 use super::gradients::{nodal_vectors, physical_gradients};
@@ -44,7 +46,7 @@ pub trait VolumetricForm: Send + Sync + 'static {
         values: &Values<NODES>,
         matter: &Matter<'_, DIM, S>,
         state: &StrainState<'_, S>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     );
@@ -111,11 +113,11 @@ fn moduli<const S: usize>(d: &Matrix<S>, dim: usize) -> (f64, f64) {
 }
 
 impl<F: VolumetricForm, const NODES: usize, const DIM: usize, const S: usize> MixedVolumetricStrain<F, NODES, DIM, S> {
-    fn material(&self, entity: &Gather<'_, NODES>) -> &Material<S> {
+    fn material(&self, entity: &EntityView<'_, NODES>) -> &Material<S> {
         Material::find(&self.materials, entity.properties.id)
     }
 
-    fn values(entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Values<NODES> {
+    fn values(entity: &EntityView<'_, NODES>, view: &StepView<'_>) -> Values<NODES> {
         let theta = match view.nodes.history.values(&VOLUMETRIC_STRAIN, 0) {
             [] => [0.0; NODES],
             column => entity.scalars(column),
@@ -123,7 +125,7 @@ impl<F: VolumetricForm, const NODES: usize, const DIM: usize, const S: usize> Mi
         Values { u: nodal_vectors(entity, view, &DISPLACEMENT), theta }
     }
 
-    fn place<'a>(material: &'a Material<S>, g: usize, entity: &Gather<'_, NODES>) -> Place<'a, NODES, DIM> {
+    fn place<'a>(material: &'a Material<S>, g: usize, entity: &EntityView<'_, NODES>) -> Place<'a, NODES, DIM> {
         let (dn, det) = physical_gradients(&entity.initial, &material.rule.dn::<NODES, DIM>()[g]);
         Place { g, n: &material.rule.n()[g], dn, weight: material.rule.weight(g) * det * material.thickness }
     }
@@ -172,7 +174,7 @@ where
         }
         materials.iter_mut().for_each(|material| material.rule = ShapeTable::get(shape, ORDER));
         let constant = !F::FINITE && materials.iter().all(|m| m.law.is_linear());
-        let tangent = if constant { Tangent::Constant } else { Tangent::General };
+        let tangent = if constant { Tangent::Constant } else { Tangent::Unsymmetric };
         Ok(Self { shape, materials, tangent, form: PhantomData })
     }
 
@@ -180,7 +182,7 @@ where
         own.len() == saved.len()
     }
 
-    fn state(&self, entity: &Gather<'_, NODES>, _view: &StepView<'_>) -> Result<Box<[f64]>, String> {
+    fn state(&self, entity: &EntityView<'_, NODES>, _view: &StepView<'_>) -> Result<Box<[f64]>, String> {
         let material = self.material(entity);
         let table = material.rule;
         let det = |g| physical_gradients::<NODES, DIM>(&entity.initial, &table.dn::<NODES, DIM>()[g]).1;
@@ -197,10 +199,10 @@ where
 
     fn local_system(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         state: &Box<[f64]>,
         view: &StepView<'_>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) -> Result<(), String> {
@@ -219,7 +221,7 @@ where
             });
             let matter = Matter { law: material.law.as_ref(), initial: &initial, bulk, shear, body, size };
             let point = Self::state_at(material, &at, &values, state)?;
-            F::add(&at, &values, &matter, &point, want, lhs, rhs);
+            F::add(&at, &values, &matter, &point, request, lhs, rhs);
         }
         Ok(())
     }
@@ -231,7 +233,7 @@ where
     /// ∫ ρ N_i N_j on the displacements, its row sums when lumped.
     fn mass(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         _state: &Box<[f64]>,
         _view: &StepView<'_>,
         lumped: bool,
@@ -253,11 +255,16 @@ where
         true
     }
 
-    fn remembers(&self, state: &Box<[f64]>) -> bool {
+    fn has_history(&self, state: &Box<[f64]>) -> bool {
         !state.is_empty()
     }
 
-    fn accept(&self, entity: &Gather<'_, NODES>, state: &mut Box<[f64]>, view: &StepView<'_>) -> Result<(), String> {
+    fn accept(
+        &self,
+        entity: &EntityView<'_, NODES>,
+        state: &mut Box<[f64]>,
+        view: &StepView<'_>,
+    ) -> Result<(), String> {
         if state.is_empty() {
             return Ok(());
         }
@@ -279,7 +286,7 @@ where
 
     fn gauss(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         state: &Box<[f64]>,
         view: &StepView<'_>,
         variable: &str,
@@ -295,7 +302,7 @@ where
         results::VARIABLES
     }
 
-    fn assumed_small(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Option<AssumedSmall> {
+    fn assumed_small(&self, entity: &EntityView<'_, NODES>, view: &StepView<'_>) -> Option<AssumedSmall> {
         (!F::FINITE).then(|| small_motion::<NODES, DIM>(self.shape, entity, view))
     }
 }

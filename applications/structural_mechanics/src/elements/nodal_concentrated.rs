@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{
-    BlockRequest, Build, ElementEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+    BlockRequest, Build, ElementEntry, EntityView, Kernel, KernelBlock, LocalUnknown, Request, StepView, Tangent,
 };
 use zelus_core::geometry::Shape;
 use zelus_core::register;
@@ -24,7 +24,7 @@ pub struct NodalConcentrated;
 
 /// Constants of one node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Constants {
+pub struct ConcentratedConstants {
     mass: f64,
     stiffness: [f64; 3],
     damping: [f64; 3],
@@ -32,7 +32,7 @@ pub struct Constants {
 }
 
 impl<const DIM: usize> Kernel<1, DIM> for NodalConcentrated {
-    type State = Constants;
+    type State = ConcentratedConstants;
 
     fn unknowns() -> [LocalUnknown; DIM] {
         std::array::from_fn(|a| LocalUnknown::of_node(0, DISPLACEMENT.component(a as u8)))
@@ -42,13 +42,13 @@ impl<const DIM: usize> Kernel<1, DIM> for NodalConcentrated {
         Ok(Self)
     }
 
-    fn state(&self, entity: &Gather<'_, 1>, view: &StepView<'_>) -> Result<Constants, String> {
+    fn state(&self, entity: &EntityView<'_, 1>, view: &StepView<'_>) -> Result<ConcentratedConstants, String> {
         refuse_rotations(entity, view)?;
         let mass = scalar(entity, view, &NODAL_MASS);
         if !(mass >= 0.0 && mass.is_finite()) {
             return Err(format!("NODAL_MASS is {mass}, it must not be negative"));
         }
-        Ok(Constants {
+        Ok(ConcentratedConstants {
             mass,
             stiffness: vector(entity, view, &NODAL_DISPLACEMENT_STIFFNESS),
             damping: vector(entity, view, &NODAL_DAMPING_RATIO),
@@ -62,17 +62,17 @@ impl<const DIM: usize> Kernel<1, DIM> for NodalConcentrated {
 
     fn local_system(
         &self,
-        entity: &Gather<'_, 1>,
-        own: &Constants,
+        entity: &EntityView<'_, 1>,
+        own: &ConcentratedConstants,
         view: &StepView<'_>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; DIM],
     ) -> Result<(), String> {
         let [gravity] = nodal_vectors(entity, view, &VOLUME_ACCELERATION);
         let [u] = nodal_vectors(entity, view, &DISPLACEMENT);
         for a in 0..DIM {
-            let stretch = if want == Want::External { -own.rest[a] } else { u[a] - own.rest[a] };
+            let stretch = if request == Request::External { -own.rest[a] } else { u[a] - own.rest[a] };
             rhs[a] += own.mass * gravity[a] - own.stiffness[a] * stretch;
             if !lhs.is_empty() {
                 lhs[a * DIM + a] += own.stiffness[a];
@@ -87,8 +87,8 @@ impl<const DIM: usize> Kernel<1, DIM> for NodalConcentrated {
 
     fn mass(
         &self,
-        _entity: &Gather<'_, 1>,
-        own: &Constants,
+        _entity: &EntityView<'_, 1>,
+        own: &ConcentratedConstants,
         _view: &StepView<'_>,
         _lumped: bool,
         out: &mut [f64],
@@ -101,7 +101,7 @@ impl<const DIM: usize> Kernel<1, DIM> for NodalConcentrated {
         true
     }
 
-    fn damping(&self, _entity: &Gather<'_, 1>, own: &Constants, out: &mut [f64]) {
+    fn damping(&self, _entity: &EntityView<'_, 1>, own: &ConcentratedConstants, out: &mut [f64]) {
         (0..DIM).for_each(|a| out[a * DIM + a] += own.damping[a]);
     }
 }

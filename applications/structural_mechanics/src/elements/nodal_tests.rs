@@ -1,5 +1,5 @@
-use zelus_core::entities::{Tangent, Want};
-use zelus_core::model::{PropertyValue, Role};
+use zelus_core::entities::{Request, Tangent};
+use zelus_core::model::{EntityRole, PropertyValue};
 
 use crate::test_model::{Random, Single, Vec3, near, size};
 use crate::variables::*;
@@ -7,7 +7,7 @@ use crate::variables::*;
 #[test]
 fn a_mass_on_a_spring_hangs_where_it_must() {
     let mut single =
-        Single::new(Role::Element, "NodalConcentratedElement3D1N", None, &[("NODAL_MASS", 2.0)], &[[0.0; 3]]);
+        Single::new(EntityRole::Element, "NodalConcentratedElement3D1N", None, &[("NODAL_MASS", 2.0)], &[[0.0; 3]]);
     let stiffness = PropertyValue::Vector(vec![10.0, 20.0, 40.0]);
     single.part.properties.get_mut(&1).unwrap().values.insert("NODAL_DISPLACEMENT_STIFFNESS".into(), stiffness);
     single.part.elements.data.values_mut(&NODAL_INITIAL_DISPLACEMENT, 0)[0] = 0.5;
@@ -21,12 +21,12 @@ fn a_mass_on_a_spring_hangs_where_it_must() {
     assert_eq!(single.mass(true).iter().sum::<f64>(), 6.0);
     assert_eq!(single.damping()[4], 3.0);
     // loads that do not depend on displacements: weight, and the initial length of the spring
-    assert_eq!(single.try_system(Want::External).unwrap().1, [5.0, 0.0, -19.62]);
+    assert_eq!(single.try_system(Request::External).unwrap().1, [5.0, 0.0, -19.62]);
 }
 
 #[test]
 fn rotational_springs_are_refused() {
-    let mut single = Single::new(Role::Element, "NodalConcentratedElement2D1N", None, &[], &[[0.0; 3]]);
+    let mut single = Single::new(EntityRole::Element, "NodalConcentratedElement2D1N", None, &[], &[[0.0; 3]]);
     let values = &mut single.part.properties.get_mut(&1).unwrap().values;
     values.insert("NODAL_ROTATIONAL_STIFFNESS".into(), PropertyValue::Vector(vec![0.0, 0.0, 1.0]));
     assert!(single.try_initialize().unwrap_err().contains("nodes have no rotations"));
@@ -37,7 +37,7 @@ fn rotational_constants_of_the_elements_own_data_are_refused() {
     for (name, nodes) in [("NodalConcentratedElement3D1N", 1), ("SpringDamperElement3D2N", 2)] {
         let x: Vec<Vec3> = (0..nodes).map(|at| [at as f64, 0.0, 0.0]).collect();
         for variable in [&NODAL_ROTATIONAL_STIFFNESS, &NODAL_ROTATIONAL_DAMPING_RATIO, &NODAL_INERTIA] {
-            let mut single = Single::new(Role::Element, name, None, &[], &x);
+            let mut single = Single::new(EntityRole::Element, name, None, &[], &x);
             single.part.elements.data.values_mut(variable, 0)[2] = 1.0;
             let said = single.try_initialize().unwrap_err();
             assert!(said.contains(variable.name()) && said.contains("nodes have no rotations"), "{said}");
@@ -49,7 +49,7 @@ fn rotational_constants_of_the_elements_own_data_are_refused() {
 fn springs_and_dampers_between_nodes_pull_equally() {
     let mut random = Random(41);
     for (name, space) in [("SpringDamperElement2D2N", 2), ("SpringDamperElement3D2N", 3)] {
-        let mut single = Single::new(Role::Element, name, None, &[], &[[0.0; 3], [1.0, 0.0, 0.0]]);
+        let mut single = Single::new(EntityRole::Element, name, None, &[], &[[0.0; 3], [1.0, 0.0, 0.0]]);
         single.part.elements.data.values_mut(&NODAL_DISPLACEMENT_STIFFNESS, 0).copy_from_slice(&[2.0, 3.0, 5.0]);
         single.part.elements.data.values_mut(&NODAL_DAMPING_RATIO, 0).copy_from_slice(&[7.0, 11.0, 13.0]);
         single.initialize();
@@ -70,7 +70,7 @@ fn bars_pull_along_their_axis() {
     let x = [[0.0; 3], [3.0, 4.0, 0.0]];
     let material = [("YOUNG_MODULUS", 100.0), ("CROSS_AREA", 0.2), ("DENSITY", 3.0), ("TRUSS_PRESTRESS_PK2", 0.7)];
     for (name, linear) in [("TrussElement3D2N", false), ("TrussLinearElement3D2N", true)] {
-        let mut single = Single::new(Role::Element, name, Some("TrussConstitutiveLaw"), &material, &x);
+        let mut single = Single::new(EntityRole::Element, name, Some("TrussConstitutiveLaw"), &material, &x);
         assert_eq!(single.block().tangent(), if linear { Tangent::Constant } else { Tangent::Symmetric });
         single.displace(&[[0.0; 3], [0.03, 0.04, 0.0]]);
         let strain = if linear { 0.01 } else { 0.5 * (1.01 * 1.01 - 1.0) };

@@ -1,13 +1,13 @@
 //! Constants of springs and masses: from the properties, or from the element's own data where those have none.
 
-use zelus_core::entities::{Gather, StepView};
+use zelus_core::entities::{EntityView, StepView};
 use zelus_core::model::Variable;
 
 use crate::variables::{NODAL_INERTIA, NODAL_ROTATIONAL_DAMPING_RATIO, NODAL_ROTATIONAL_STIFFNESS};
 
 /// One number.
 pub(super) fn scalar<const NODES: usize>(
-    entity: &Gather<'_, NODES>,
+    entity: &EntityView<'_, NODES>,
     view: &StepView<'_>,
     variable: &Variable<f64>,
 ) -> f64 {
@@ -17,7 +17,7 @@ pub(super) fn scalar<const NODES: usize>(
 
 /// Three numbers.
 pub(super) fn vector<const NODES: usize>(
-    entity: &Gather<'_, NODES>,
+    entity: &EntityView<'_, NODES>,
     view: &StepView<'_>,
     variable: &Variable<[f64; 3]>,
 ) -> [f64; 3] {
@@ -33,7 +33,7 @@ pub(super) fn vector<const NODES: usize>(
 /// # Errors
 /// A rotational constant other than zero, in the properties or in the element's own data.
 pub(super) fn refuse_rotations<const NODES: usize>(
-    entity: &Gather<'_, NODES>,
+    entity: &EntityView<'_, NODES>,
     view: &StepView<'_>,
 ) -> Result<(), String> {
     for variable in [&NODAL_ROTATIONAL_STIFFNESS, &NODAL_INERTIA, &NODAL_ROTATIONAL_DAMPING_RATIO] {

@@ -2,7 +2,7 @@
 
 use crate::test_model::{Single, reference_cell, size, weighted};
 use zelus_core::entities::find_kind;
-use zelus_core::model::Role;
+use zelus_core::model::EntityRole;
 
 fn double_weighted(matrix: &[f64], rows: usize) -> f64 {
     let products: Vec<f64> =
@@ -18,12 +18,12 @@ fn agrees_with_the_reference_program() {
         let words: Vec<&str> = line.split(' ').collect();
         let [name, law, more, tolerance] = words[..4] else { panic!("{line}") };
         let tolerance: f64 = tolerance.parse().unwrap();
-        let entry = find_kind(Role::Element, name).unwrap();
+        let entry = find_kind(EntityRole::Element, name).unwrap();
         let (x, u) = reference_cell(entry.cell.unwrap(), entry.space);
         let mut values = vec![("YOUNG_MODULUS", 100.0), ("POISSON_RATIO", 0.3), ("DENSITY", 2.0), ("THICKNESS", 0.5)];
         let more = more.split(',').filter_map(|pair| pair.split_once('='));
         values.extend(more.map(|(name, value)| (name, value.parse::<f64>().unwrap())));
-        let mut single = Single::new(Role::Element, name, Some(law), &values, &x);
+        let mut single = Single::new(EntityRole::Element, name, Some(law), &values, &x);
         single.displace(&u);
         let (k, rhs) = single.system();
         let (consistent, lumped) = (single.mass(false), single.mass(true));

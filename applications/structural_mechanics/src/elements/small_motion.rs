@@ -1,6 +1,6 @@
 //! Strain and rotation that elements for small displacements take to be small: parts of the displacement gradient at the centre.
 
-use zelus_core::entities::{AssumedSmall, Gather, StepView};
+use zelus_core::entities::{AssumedSmall, EntityView, StepView};
 use zelus_core::geometry::{Shape, ShapeTable};
 
 use super::gradients::{gradient, nodal_vectors, physical_gradients};
@@ -17,7 +17,7 @@ const REMEDY: &str =
 /// The one of strain |sym ∇u| and rotation |skew ∇u| that is larger beside its limit.
 pub(super) fn small_motion<const NODES: usize, const DIM: usize>(
     shape: Shape,
-    entity: &Gather<'_, NODES>,
+    entity: &EntityView<'_, NODES>,
     view: &StepView<'_>,
 ) -> AssumedSmall {
     let centre = ShapeTable::get(shape, 1);

@@ -13,11 +13,11 @@ use std::marker::PhantomData;
 
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::entities::{
-    AssumedSmall, BlockRequest, FacePoint, Gather, Gauss, Kernel, LocalUnknown, StepView, Tangent, Want,
+    AssumedSmall, BlockRequest, EntityView, FacePoint, Gauss, Kernel, LocalUnknown, Request, StepView, Tangent,
 };
 use zelus_core::geometry::{Shape, ShapeTable};
 
-use self::kinematics::{Motion, radius};
+use self::kinematics::{ElementMotion, radius};
 use super::band::{self, BANDS_AS_KRATOS};
 use super::formulation::Formulation;
 use super::gradients::{displacements, nodal_vectors, physical_gradients};
@@ -39,7 +39,7 @@ pub struct Solid<F, const NODES: usize, const DIM: usize, const S: usize> {
 }
 
 impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid<F, NODES, DIM, S> {
-    fn material(&self, entity: &Gather<'_, NODES>) -> &Material<S> {
+    fn material(&self, entity: &EntityView<'_, NODES>) -> &Material<S> {
         Material::find(&self.materials, entity.properties.id)
     }
 
@@ -47,8 +47,8 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
     /// no pressure in others.
     fn pressure(
         material: &Material<S>,
-        entity: &Gather<'_, NODES>,
-        motion: &Motion<NODES>,
+        entity: &EntityView<'_, NODES>,
+        motion: &ElementMotion<NODES>,
         state: &[f64],
     ) -> Result<[f64; 2], String> {
         let (mut volume, mut change) = (0.0, 0.0);
@@ -129,7 +129,7 @@ where
         let tangent = if constant {
             Tangent::Constant
         } else if materials.iter().any(|m| !m.law.is_symmetric(!F::FINITE)) {
-            Tangent::General
+            Tangent::Unsymmetric
         } else {
             Tangent::Symmetric
         };
@@ -140,7 +140,7 @@ where
         own.len() == saved.len()
     }
 
-    fn state(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Result<Box<[f64]>, String> {
+    fn state(&self, entity: &EntityView<'_, NODES>, view: &StepView<'_>) -> Result<Box<[f64]>, String> {
         let material = self.material(entity);
         let table = material.rule;
         material.accepts_band(&|| band::width(table, &entity.initial, view.info.has(BANDS_AS_KRATOS)))?;
@@ -159,17 +159,17 @@ where
 
     fn local_system(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         state: &Box<[f64]>,
         view: &StepView<'_>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) -> Result<(), String> {
         let material = self.material(entity);
         let motion = self.motion(entity, view);
         let acceleration = nodal_vectors(entity, view, &VOLUME_ACCELERATION);
-        let whole = self.tangent == Tangent::General;
+        let whole = self.tangent == Tangent::Unsymmetric;
         let mut upper = [[0.0; SIZE]; SIZE];
         let mut d = [[0.0; S]; S];
         let mean = Self::mean_gradients(material, entity);
@@ -183,7 +183,7 @@ where
             if material.density > 0.0 {
                 self.body_forces(material, &material.rule.n()[g], point.weight, &acceleration, rhs);
             }
-            if want == Want::External {
+            if request == Request::External {
                 continue;
             }
             let stress =
@@ -231,7 +231,7 @@ where
     /// Lumped: ∫ ρ N_i on the present configuration; middles of 8-node quadrilaterals then outweigh the corners.
     fn mass(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         _state: &Box<[f64]>,
         _view: &StepView<'_>,
         lumped: bool,
@@ -247,11 +247,16 @@ where
         true
     }
 
-    fn remembers(&self, state: &Box<[f64]>) -> bool {
+    fn has_history(&self, state: &Box<[f64]>) -> bool {
         !state.is_empty()
     }
 
-    fn accept(&self, entity: &Gather<'_, NODES>, state: &mut Box<[f64]>, view: &StepView<'_>) -> Result<(), String> {
+    fn accept(
+        &self,
+        entity: &EntityView<'_, NODES>,
+        state: &mut Box<[f64]>,
+        view: &StepView<'_>,
+    ) -> Result<(), String> {
         if state.is_empty() {
             return Ok(());
         }
@@ -273,7 +278,7 @@ where
 
     fn gauss(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         state: &Box<[f64]>,
         view: &StepView<'_>,
         variable: &str,
@@ -297,17 +302,17 @@ where
         if averages_volume { Vec::new() } else { locking(request, F::FINITE).into_iter().collect() }
     }
 
-    fn assumed_small(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Option<AssumedSmall> {
+    fn assumed_small(&self, entity: &EntityView<'_, NODES>, view: &StepView<'_>) -> Option<AssumedSmall> {
         (!F::FINITE).then(|| small_motion::<NODES, DIM>(self.shape, entity, view))
     }
 
-    fn lacks_tractions(&self, entity: &Gather<'_, NODES>) -> Option<&'static str> {
+    fn lacks_tractions(&self, entity: &EntityView<'_, NODES>) -> Option<&'static str> {
         Self::unknown_tractions(self.material(entity))
     }
 
     fn traction(
         &self,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         point: &FacePoint,
         displacements: &[[f64; 3]; NODES],
         by: Option<&mut [[f64; 3]; SIZE]>,

@@ -6,7 +6,7 @@
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{
-    BlockRequest, Build, ElementEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+    BlockRequest, Build, ElementEntry, EntityView, Kernel, KernelBlock, LocalUnknown, Request, StepView, Tangent,
 };
 use zelus_core::geometry::Shape;
 use zelus_core::register;
@@ -20,7 +20,7 @@ pub struct SpringDamper<const DIM: usize>;
 
 /// Constants of one pair of nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Constants {
+pub struct SpringDamperConstants {
     stiffness: [f64; 3],
     damping: [f64; 3],
 }
@@ -35,7 +35,7 @@ fn add_between(dim: usize, values: &[f64; 3], out: &mut [f64]) {
 }
 
 impl<const DIM: usize, const SIZE: usize> Kernel<2, SIZE> for SpringDamper<DIM> {
-    type State = Constants;
+    type State = SpringDamperConstants;
 
     fn unknowns() -> [LocalUnknown; SIZE] {
         std::array::from_fn(|row| LocalUnknown::of_node((row / DIM) as u8, DISPLACEMENT.component((row % DIM) as u8)))
@@ -45,9 +45,9 @@ impl<const DIM: usize, const SIZE: usize> Kernel<2, SIZE> for SpringDamper<DIM> 
         Ok(Self)
     }
 
-    fn state(&self, entity: &Gather<'_, 2>, view: &StepView<'_>) -> Result<Constants, String> {
+    fn state(&self, entity: &EntityView<'_, 2>, view: &StepView<'_>) -> Result<SpringDamperConstants, String> {
         refuse_rotations(entity, view)?;
-        Ok(Constants {
+        Ok(SpringDamperConstants {
             stiffness: vector(entity, view, &NODAL_DISPLACEMENT_STIFFNESS),
             damping: vector(entity, view, &NODAL_DAMPING_RATIO),
         })
@@ -59,14 +59,14 @@ impl<const DIM: usize, const SIZE: usize> Kernel<2, SIZE> for SpringDamper<DIM> 
 
     fn local_system(
         &self,
-        entity: &Gather<'_, 2>,
-        own: &Constants,
+        entity: &EntityView<'_, 2>,
+        own: &SpringDamperConstants,
         view: &StepView<'_>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) -> Result<(), String> {
-        if want == Want::External {
+        if request == Request::External {
             return Ok(());
         }
         let [first, second] = nodal_vectors(entity, view, &DISPLACEMENT);
@@ -85,7 +85,7 @@ impl<const DIM: usize, const SIZE: usize> Kernel<2, SIZE> for SpringDamper<DIM> 
         true
     }
 
-    fn damping(&self, _entity: &Gather<'_, 2>, own: &Constants, out: &mut [f64]) {
+    fn damping(&self, _entity: &EntityView<'_, 2>, own: &SpringDamperConstants, out: &mut [f64]) {
         add_between(DIM, &own.damping, out);
     }
 }

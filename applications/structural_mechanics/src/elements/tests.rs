@@ -1,6 +1,6 @@
-use zelus_core::entities::{Tangent, Want};
+use zelus_core::entities::{Request, Tangent};
 use zelus_core::geometry::{Shape, ShapeTable, mapping};
-use zelus_core::model::Role;
+use zelus_core::model::EntityRole;
 
 use crate::test_model::{Random, Single, Vec3, near, size};
 
@@ -36,7 +36,7 @@ fn all() -> Vec<(String, &'static str, String, Shape, usize)> {
 }
 
 fn element(name: &str, law: &str, x: &[Vec3]) -> Single {
-    Single::new(Role::Element, name, Some(law), &MATERIAL, x)
+    Single::new(EntityRole::Element, name, Some(law), &MATERIAL, x)
 }
 
 #[test]
@@ -241,7 +241,7 @@ fn masses_and_weights_add_up() {
         let x = random.cell(shape, 0.0, space);
         let law = if space == 2 { "LinearElasticPlaneStrain2DLaw" } else { "LinearElastic3DLaw" };
         let name = format!("SmallDisplacementElement{suffix}");
-        let single = Single::new(Role::Element, &name, Some(law), &material, &x);
+        let single = Single::new(EntityRole::Element, &name, Some(law), &material, &x);
         let volume = mapping::domain_size(shape, &x) * if space == 2 { 0.5 } else { 1.0 };
         for lumped in [false, true] {
             let m = single.mass(lumped);
@@ -258,12 +258,12 @@ fn gravity_weighs_the_body() {
     let x = Random(18).cell(Shape::Hex8, 0.05, 3);
     let material = [&MATERIAL[..], &[("DENSITY", 3.0)]].concat();
     let name = "SmallDisplacementElement3D8N";
-    let mut single = Single::new(Role::Element, name, Some("LinearElastic3DLaw"), &material, &x);
+    let mut single = Single::new(EntityRole::Element, name, Some("LinearElastic3DLaw"), &material, &x);
     assert_eq!(single.block().tangent(), Tangent::Constant);
     assert!(!single.block().has_external(&single.part.view()));
     single.set_nodal(&crate::variables::VOLUME_ACCELERATION, &[[0.0, 0.0, -10.0]; 8]);
     assert!(single.block().has_external(&single.part.view()));
-    let (_, rhs) = single.try_system(Want::External).unwrap();
+    let (_, rhs) = single.try_system(Request::External).unwrap();
     let weight: f64 = rhs.iter().skip(2).step_by(3).sum();
     assert!(near(weight, -30.0 * mapping::domain_size(Shape::Hex8, &x), 1e-10));
     assert_eq!(rhs, single.residual());
@@ -274,7 +274,7 @@ fn turned_inside_out_is_an_error() {
     let x = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let mut single = element("TotalLagrangianElement2D4N", "HyperElasticPlaneStrain2DLaw", &x);
     single.displace(&[[0.0; 3], [-2.0, 0.0, 0.0], [-2.0, 0.0, 0.0], [0.0; 3]]);
-    assert!(single.try_system(Want::Both).unwrap_err().contains("inside out"));
+    assert!(single.try_system(Request::Both).unwrap_err().contains("inside out"));
 }
 
 #[test]
@@ -333,7 +333,7 @@ fn plastic_strain_stays_with_an_accepted_step() {
         ("SmallDisplacementBbarElement2D4N", "SmallStrainJ2PlasticityPlaneStrain2DLaw"),
         ("TotalLagrangianElement2D4N", "FiniteStrainIsotropicPlasticityPlaneStrainVonMisesVonMises"),
     ] {
-        let mut single = Single::new(Role::Element, name, Some(law), &material, &x);
+        let mut single = Single::new(EntityRole::Element, name, Some(law), &material, &x);
         let pulled = x.map(|p| [0.05 * p[0], 0.0, 0.0]);
         single.displace(&pulled);
         let (k, forces) = single.system();
@@ -347,7 +347,7 @@ fn plastic_strain_stays_with_an_accepted_step() {
         single.displace(&[[0.0; 3]; 4]);
         let rest = single.residual();
         assert!(size(&rest) > 0.1, "{name}: what has flowed does not go back");
-        let mut next = Single::new(Role::Element, name, Some(law), &material, &x);
+        let mut next = Single::new(EntityRole::Element, name, Some(law), &material, &x);
         assert_eq!(size(&next.residual()), 0.0);
         next.inherit(&single);
         assert_eq!(next.residual(), rest, "{name}: the next stage goes on from there");

@@ -8,7 +8,7 @@
 
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::entities::{
-    BlockRequest, Build, ElementEntry, Gather, Kernel, KernelBlock, LocalUnknown, StepView, Tangent, Want,
+    BlockRequest, Build, ElementEntry, EntityView, Kernel, KernelBlock, LocalUnknown, Request, StepView, Tangent,
 };
 use zelus_core::geometry::Shape;
 use zelus_core::register;
@@ -32,14 +32,14 @@ pub struct Truss<const DIM: usize, const LINEAR: bool> {
 
 impl<const DIM: usize, const LINEAR: bool> Truss<DIM, LINEAR> {
     /// Unit direction and initial length.
-    fn axis(entity: &Gather<'_, 2>) -> ([f64; 3], f64) {
+    fn axis(entity: &EntityView<'_, 2>) -> ([f64; 3], f64) {
         let along = sub(entity.initial[1], entity.initial[0]);
         let length = norm(along);
         (along.map(|x| x / length), length)
     }
 
     /// Axial strain: of Green and Lagrange, or the small one.
-    fn strain(entity: &Gather<'_, 2>, view: &StepView<'_>) -> f64 {
+    fn strain(entity: &EntityView<'_, 2>, view: &StepView<'_>) -> f64 {
         let (direction, length) = Self::axis(entity);
         if LINEAR {
             let [first, second] = nodal_vectors(entity, view, &DISPLACEMENT);
@@ -55,7 +55,7 @@ impl<const DIM: usize, const LINEAR: bool> Truss<DIM, LINEAR> {
     fn response(
         &self,
         strain: f64,
-        entity: &Gather<'_, 2>,
+        entity: &EntityView<'_, 2>,
         state: &[f64; 2],
         view: &StepView<'_>,
     ) -> Result<(f64, f64, [f64; 2]), String> {
@@ -113,7 +113,7 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
         })
     }
 
-    fn state(&self, entity: &Gather<'_, 2>, _view: &StepView<'_>) -> Result<[f64; 2], String> {
+    fn state(&self, entity: &EntityView<'_, 2>, _view: &StepView<'_>) -> Result<[f64; 2], String> {
         let (_, length) = Self::axis(entity);
         if length > 0.0 { Ok([0.0; 2]) } else { Err("both ends are at the same place".into()) }
     }
@@ -124,10 +124,10 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
 
     fn local_system(
         &self,
-        entity: &Gather<'_, 2>,
+        entity: &EntityView<'_, 2>,
         state: &[f64; 2],
         view: &StepView<'_>,
-        want: Want,
+        request: Request,
         lhs: &mut [f64],
         rhs: &mut [f64; SIZE],
     ) -> Result<(), String> {
@@ -140,7 +140,7 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
             rhs[DIM + a] += sixth * (of[0] + 2.0 * of[1]);
         }
         // a linear elastic bar has its external forces, the prestress among them, apart from those of the strain
-        let strain = if want == Want::External { 0.0 } else { Self::strain(entity, view) };
+        let strain = if request == Request::External { 0.0 } else { Self::strain(entity, view) };
         let (stress, modulus, _) = self.response(strain, entity, state, view)?;
         // derivative of the strain along x_2
         let along = match LINEAR {
@@ -173,7 +173,7 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
         self.prestress != 0.0 || (self.density > 0.0 && gravity)
     }
 
-    fn accept(&self, entity: &Gather<'_, 2>, state: &mut [f64; 2], view: &StepView<'_>) -> Result<(), String> {
+    fn accept(&self, entity: &EntityView<'_, 2>, state: &mut [f64; 2], view: &StepView<'_>) -> Result<(), String> {
         *state = self.response(Self::strain(entity, view), entity, state, view)?.2;
         Ok(())
     }
@@ -184,7 +184,7 @@ impl<const DIM: usize, const LINEAR: bool, const SIZE: usize> Kernel<2, SIZE> fo
 
     fn mass(
         &self,
-        entity: &Gather<'_, 2>,
+        entity: &EntityView<'_, 2>,
         _state: &[f64; 2],
         _view: &StepView<'_>,
         lumped: bool,

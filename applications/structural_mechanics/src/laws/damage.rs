@@ -47,7 +47,7 @@ pub struct IsotropicDamage<const S: usize, const STRESS_FREE: bool> {
 }
 
 /// A state as if nothing grew.
-struct Trial<const S: usize> {
+struct TrialDamage<const S: usize> {
     d: Matrix<S>,
     /// The strain without its thermal part.
     strain: [f64; S],
@@ -131,7 +131,7 @@ impl<const S: usize, const STRESS_FREE: bool> IsotropicDamage<S, STRESS_FREE> {
         if now > d { (now, slope, ratio) } else { (d, 0.0, ratio) }
     }
 
-    fn trial(&self, state: &StrainState<'_, S>) -> Trial<S> {
+    fn trial(&self, state: &StrainState<'_, S>) -> TrialDamage<S> {
         let t = state.temperature;
         let elasticity = Elasticity { young: self.young.at(t), poisson: self.poisson };
         let free = self.expansion.as_ref().map_or(0.0, |own| own.strain(t));
@@ -151,7 +151,7 @@ impl<const S: usize, const STRESS_FREE: bool> IsotropicDamage<S, STRESS_FREE> {
         }
         let strength = self.strength.at(t);
         let by_strain = multiply(&d, &by_stress).map(|by| by / strength);
-        Trial { d, strain, stress, ratio: q / strength, by_strain }
+        TrialDamage { d, strain, stress, ratio: q / strength, by_strain }
     }
 }
 

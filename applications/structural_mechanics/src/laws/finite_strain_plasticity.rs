@@ -30,7 +30,7 @@ const CLOSE: f64 = 1e-5;
 pub struct FiniteStrainPlasticity(pub J2);
 
 /// A trial state by its principal axes, and its return.
-struct Trial {
+struct FiniteStrainTrial {
     /// λ_A².
     squares: [f64; 3],
     /// Σ ε_A.
@@ -43,7 +43,7 @@ struct Trial {
 }
 
 impl FiniteStrainPlasticity {
-    fn trial<const S: usize>(&self, state: &StrainState<'_, S>) -> Trial {
+    fn trial<const S: usize>(&self, state: &StrainState<'_, S>) -> FiniteStrainTrial {
         let (g, alpha) = remembered(state.history);
         let l = cholesky(&(IDENTITY + g));
         let (squares, vectors) = eigen(&congruent(&l.transpose(), &right_cauchy_green(state)));
@@ -52,16 +52,16 @@ impl FiniteStrainPlasticity {
         let dilation: f64 = logs.iter().sum();
         let dev = logs.map(|e| e - dilation / 3.0);
         let q = 2.0 * self.0.mu * (1.5 * dev.iter().map(|e| e * e).sum::<f64>()).sqrt();
-        Trial { squares, dilation, dev, axes: l * vectors, turn: self.0.turn_back(q, alpha) }
+        FiniteStrainTrial { squares, dilation, dev, axes: l * vectors, turn: self.0.turn_back(q, alpha) }
     }
 
     /// τ_A.
-    fn kirchhoff(&self, trial: &Trial) -> [f64; 3] {
+    fn kirchhoff(&self, trial: &FiniteStrainTrial) -> [f64; 3] {
         trial.dev.map(|e| self.0.bulk * trial.dilation + 2.0 * self.0.mu * trial.turn.kept * e)
     }
 
     /// D_AB.
-    fn principal_tangent(&self, trial: &Trial, tau: &[f64; 3]) -> Tensor {
+    fn principal_tangent(&self, trial: &FiniteStrainTrial, tau: &[f64; 3]) -> Tensor {
         let two_mu = 2.0 * self.0.mu;
         let size: f64 = trial.dev.iter().map(|e| e * e).sum();
         let lost = if trial.turn.delta > 0.0 { two_mu * trial.turn.lost / size } else { 0.0 };

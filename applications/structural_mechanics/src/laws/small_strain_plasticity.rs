@@ -20,7 +20,7 @@ use crate::tensor::{Tensor, deviator, pairs, strain_tensor, strain_vector, stres
 pub struct SmallStrainPlasticity(pub J2);
 
 /// A trial state and its return.
-struct Trial {
+struct SmallStrainTrial {
     /// Trial deviator of the stress.
     s: Tensor,
     /// Its norm.
@@ -56,12 +56,12 @@ pub(super) fn answer<const S: usize>(plastic: &Tensor, alpha: f64, variable: &st
 }
 
 impl SmallStrainPlasticity {
-    fn trial<const S: usize>(&self, state: &StrainState<'_, S>) -> Trial {
+    fn trial<const S: usize>(&self, state: &StrainState<'_, S>) -> SmallStrainTrial {
         let (plastic, alpha) = remembered(state.history);
         let strain = strain_tensor(&state.strain);
         let s = 2.0 * self.0.mu * (deviator(&strain) - plastic);
         let size = s.norm();
-        Trial { s, size, dilation: strain.trace(), turn: self.0.turn_back(1.5_f64.sqrt() * size, alpha) }
+        SmallStrainTrial { s, size, dilation: strain.trace(), turn: self.0.turn_back(1.5_f64.sqrt() * size, alpha) }
     }
 
     fn boxed<const S: usize>(properties: &Properties) -> Result<Box<dyn ConstitutiveLaw<S>>> {
@@ -71,7 +71,7 @@ impl SmallStrainPlasticity {
 
 impl<const S: usize> ConstitutiveLaw<S> for SmallStrainPlasticity {
     fn pk2(&self, state: &StrainState<'_, S>, tangent: Option<&mut Matrix<S>>) -> [f64; S] {
-        let Trial { s, size, dilation, turn } = self.trial(state);
+        let SmallStrainTrial { s, size, dilation, turn } = self.trial(state);
         let (pairs, unit) = (pairs::<S>(), |p, q| if p == q { 1.0 } else { 0.0 });
         if let Some(tangent) = tangent {
             let two_mu = 2.0 * self.0.mu;
@@ -90,7 +90,7 @@ impl<const S: usize> ConstitutiveLaw<S> for SmallStrainPlasticity {
 
     /// The elastic part: ½ K tr²(ε) + ‖dev σ‖²/4μ.
     fn energy(&self, state: &StrainState<'_, S>) -> f64 {
-        let Trial { size, dilation, turn, .. } = self.trial(state);
+        let SmallStrainTrial { size, dilation, turn, .. } = self.trial(state);
         0.5 * self.0.bulk * dilation * dilation + (turn.kept * size).powi(2) / (4.0 * self.0.mu)
     }
 
@@ -103,7 +103,7 @@ impl<const S: usize> ConstitutiveLaw<S> for SmallStrainPlasticity {
     }
 
     fn advance(&self, state: &StrainState<'_, S>, history: &mut [f64]) {
-        let Trial { s, turn, .. } = self.trial(state);
+        let SmallStrainTrial { s, turn, .. } = self.trial(state);
         let (mut plastic, alpha) = remembered(state.history);
         let share = (1.0 - turn.kept) / (2.0 * self.0.mu);
         plastic += share * s;
@@ -112,7 +112,7 @@ impl<const S: usize> ConstitutiveLaw<S> for SmallStrainPlasticity {
 
     fn internal(&self, state: &StrainState<'_, S>, variable: &str, out: &mut Vec<f64>) -> bool {
         if let "UNIAXIAL_STRESS" | PLASTIC_WORK = variable {
-            let Trial { size, turn, .. } = self.trial(state);
+            let SmallStrainTrial { size, turn, .. } = self.trial(state);
             let q = 1.5_f64.sqrt() * turn.kept * size;
             out.push(if variable == PLASTIC_WORK { q * turn.delta } else { q });
             return true;

@@ -3,13 +3,13 @@
 use zelus_core::register;
 use zelus_core::scalar::Real;
 
-use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting};
+use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, ContactPoint};
 
 struct Constant(f64);
 
 impl ConductanceLaw for Constant {
-    fn conductance(&self, meeting: &Meeting, _temperatures: [ByTemperatures; 2]) -> ByTemperatures {
-        ByTemperatures::constant(if meeting.touches { self.0 } else { 0.0 })
+    fn conductance(&self, contact: &ContactPoint, _temperatures: [ByTemperatures; 2]) -> ByTemperatures {
+        ByTemperatures::constant(if contact.touches { self.0 } else { 0.0 })
     }
 }
 

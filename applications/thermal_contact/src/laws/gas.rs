@@ -3,7 +3,7 @@
 use zelus_core::register;
 use zelus_core::scalar::Real;
 
-use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting};
+use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, ContactPoint};
 
 struct Gas {
     conductivity: f64,
@@ -11,8 +11,8 @@ struct Gas {
 }
 
 impl ConductanceLaw for Gas {
-    fn conductance(&self, meeting: &Meeting, _temperatures: [ByTemperatures; 2]) -> ByTemperatures {
-        ByTemperatures::constant(self.conductivity / (meeting.gap + self.jump))
+    fn conductance(&self, contact: &ContactPoint, _temperatures: [ByTemperatures; 2]) -> ByTemperatures {
+        ByTemperatures::constant(self.conductivity / (contact.gap + self.jump))
     }
 
     fn acts_apart(&self) -> bool {

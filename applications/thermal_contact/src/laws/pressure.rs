@@ -6,7 +6,7 @@
 use zelus_core::register;
 use zelus_core::scalar::Real;
 
-use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting};
+use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, ContactPoint};
 
 struct ByPressure {
     conductance: f64,
@@ -15,8 +15,8 @@ struct ByPressure {
 }
 
 impl ConductanceLaw for ByPressure {
-    fn conductance(&self, meeting: &Meeting, _temperatures: [ByTemperatures; 2]) -> ByTemperatures {
-        let share = (meeting.pressure / self.hardness).max(0.0);
+    fn conductance(&self, contact: &ContactPoint, _temperatures: [ByTemperatures; 2]) -> ByTemperatures {
+        let share = (contact.pressure / self.hardness).max(0.0);
         ByTemperatures::constant(self.conductance * share.powf(self.exponent))
     }
 }

@@ -3,7 +3,7 @@
 use zelus_core::register;
 use zelus_core::scalar::Real;
 
-use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, Meeting};
+use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, ContactPoint};
 
 struct Radiation {
     /// ε σ.
@@ -11,8 +11,8 @@ struct Radiation {
 }
 
 impl ConductanceLaw for Radiation {
-    fn conductance(&self, meeting: &Meeting, [a, b]: [ByTemperatures; 2]) -> ByTemperatures {
-        if meeting.touches { ByTemperatures::constant(0.0) } else { (a * a + b * b) * (a + b) * self.factor }
+    fn conductance(&self, contact: &ContactPoint, [a, b]: [ByTemperatures; 2]) -> ByTemperatures {
+        if contact.touches { ByTemperatures::constant(0.0) } else { (a * a + b * b) * (a + b) * self.factor }
     }
 
     fn acts_apart(&self) -> bool {

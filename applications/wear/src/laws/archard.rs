@@ -4,7 +4,7 @@
 
 use zelus_core::register;
 
-use crate::law::{Rubbing, WearLaw, WearLawEntry};
+use crate::law::{SlidingStep, WearLaw, WearLawEntry};
 
 struct Archard {
     /// K/H (area per force).
@@ -12,8 +12,8 @@ struct Archard {
 }
 
 impl WearLaw for Archard {
-    fn depth(&self, rubbing: &Rubbing) -> f64 {
-        self.factor * rubbing.pressure * rubbing.slip
+    fn depth(&self, sliding: &SlidingStep) -> f64 {
+        self.factor * sliding.pressure * sliding.slip
     }
 }
 

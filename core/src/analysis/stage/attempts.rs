@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use super::super::cutting::{Cutting, Lengths};
-use super::super::driver::Point;
-use super::super::saved::Saved;
+use super::super::driver::LoopPoint;
+use super::super::step_backup::StepBackup;
 use super::{RunContext, Stage};
 use crate::assembly::System;
 use crate::diagnostics::{Error, Result};
@@ -14,7 +14,7 @@ use crate::strategies::StepRecord;
 
 impl Stage {
     /// Solves up to `target`, in one step or, where that does not converge, in shorter ones.
-    pub(super) fn reach(&mut self, target: f64, run: &mut RunContext<'_>) -> Result<()> {
+    pub(super) fn advance_to(&mut self, target: f64, run: &mut RunContext<'_>) -> Result<()> {
         let whole = target - run.model.root(&self.root)?.info.time;
         let mut lengths = Lengths::new(self.schedule.cutting, whole, self.first_length.take());
         let mut failed: Option<StepRecord> = None;
@@ -22,7 +22,7 @@ impl Stage {
             let from = run.model.root(&self.root)?.info.time;
             let (to, last) = lengths.next(from, target);
             let part = run.model.root_mut(&self.root)?;
-            let saved = self.strategy.can_retry().then(|| Saved::of(part, &mut self.system));
+            let saved = self.strategy.can_retry().then(|| StepBackup::of(part, &mut self.system));
             let record = self.attempt(to, run)?;
             if let Some(why) = record.coarse.as_ref().filter(|_| saved.is_some() && lengths.refine(to - from)) {
                 let factor = self.schedule.cutting.factor;
@@ -107,7 +107,7 @@ impl Stage {
         }
         let ranks = run.model.ranks.clone();
         let processes = &mut self.processes;
-        run.driver.at(Point::BeginStep, &self.root, run.model, &self.system, &mut |model| {
+        run.driver.at(LoopPoint::BeginStep, &self.root, run.model, &self.system, &mut |model| {
             processes.iter_mut().try_for_each(|process| ranks.agree(process.begin_step(model)))
         })?;
         let start = Instant::now();
@@ -123,7 +123,7 @@ impl Stage {
 
     fn accept(&mut self, run: &mut RunContext<'_>) -> Result<()> {
         let part = run.model.root_mut(&self.root)?;
-        self.strategy.accept_step(part, &mut self.system)?;
+        self.strategy.finalize_step(part, &mut self.system)?;
         // Explicit steps are many and short: the state at their end tells.
         if !part.info.solver.explicit {
             self.largest.see(part, &self.system);
@@ -132,11 +132,12 @@ impl Stage {
         let start = Instant::now();
         let ranks = run.model.ranks.clone();
         let Self { processes, system, root, .. } = self;
-        run.driver.at(Point::EndStep, root, run.model, system, &mut |model| {
+        run.driver.at(LoopPoint::EndStep, root, run.model, system, &mut |model| {
             processes.iter_mut().try_for_each(|process| ranks.agree(process.end_step(model, system)))
         })?;
         run.report.add_numbers(processes.iter().flat_map(|process| process.summary()));
-        run.driver.at(Point::Output, root, run.model, system, &mut |model| write_output(processes, model, system))?;
+        run.driver
+            .at(LoopPoint::Output, root, run.model, system, &mut |model| write_output(processes, model, system))?;
         run.report.add_seconds("output", start.elapsed().as_secs_f64());
         self.pass_on_messages(run);
         Ok(())

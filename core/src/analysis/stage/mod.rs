@@ -4,25 +4,25 @@
 //! materials are read, the ranks share the mesh, processes, system and strategy are built, and the whole is checked.
 
 mod attempts;
-mod built;
-mod check;
+mod built_stage;
+mod deck_check;
 mod messages;
-mod parsed;
-mod problems;
-mod read;
+mod parsed_stage;
+mod problems_of_ranks;
+mod read_stage;
 mod request;
 mod run_context;
 mod schedule;
-mod shared;
+mod shared_stage;
 
 use std::path::PathBuf;
 use std::time::Instant;
 
 use super::contents::Contents;
-use super::driver::{Driver, Point};
+use super::driver::{Driver, LoopPoint};
 use super::large_motion::LargeMotion;
 use super::report::RunReport;
-use super::saved_run::{SavedStage, hand_out, resume_blocks, states_of};
+use super::saved_run::{SavedStage, resume_blocks, resume_each, states_of};
 use crate::assembly::System;
 use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Report, Result, unfit};
@@ -31,13 +31,13 @@ use crate::model::Model;
 use crate::processes::{Process, largest_results};
 use crate::strategies::{Plan, SolutionStrategy};
 
-use self::built::BuiltStage;
-use self::check::check;
+use self::built_stage::BuiltStage;
+use self::deck_check::check;
 use self::messages::{messages_of, tell};
-use self::parsed::ParsedStage;
-use self::read::ReadStage;
+use self::parsed_stage::ParsedStage;
+use self::read_stage::ReadStage;
 use self::schedule::Schedule;
-use self::shared::SharedStage;
+use self::shared_stage::SharedStage;
 
 pub(super) use self::request::StageRequest;
 pub(super) use self::run_context::{RunContext, Systems};
@@ -79,7 +79,7 @@ impl Stage {
         let shared = SharedStage::share(read, &folders.deck, run)?;
         let built = BuiltStage::build(shared, folders, more, outputs, run)?;
         tell(check(&built, run.model)?, run.report, run.monitor);
-        run.driver.at(Point::Ready, &built.root, run.model, &built.system, &mut |_| Ok(()))?;
+        run.driver.at(LoopPoint::Ready, &built.root, run.model, &built.system, &mut |_| Ok(()))?;
         run.report.add_seconds("set up", start.elapsed().as_secs_f64());
         Ok(Self::new(built))
     }
@@ -130,7 +130,7 @@ impl Stage {
         self.begun = true;
         run.report.stages.push(self.name.clone());
         let processes = &mut self.processes;
-        run.driver.at(Point::BeforeLoop, &self.root, run.model, &self.system, &mut |model| {
+        run.driver.at(LoopPoint::BeforeLoop, &self.root, run.model, &self.system, &mut |model| {
             let ranks = model.ranks.clone();
             processes.iter_mut().try_for_each(|process| ranks.agree(process.before_loop(model)))
         })?;
@@ -180,14 +180,16 @@ impl Stage {
         }
         resume_blocks(&mut self.system.elements, state.elements)?;
         resume_blocks(&mut self.system.conditions, state.conditions)?;
-        hand_out(&mut self.system.interactions, state.interactions, "interactions", |own, state| {
+        resume_each(&mut self.system.interactions, state.interactions, "interactions", |own, state| {
             own.resume(part, state)
         })?;
         if let Some(state) = state.strategy {
             self.strategy.resume(part, &self.system, state)?;
         }
         let ranks = model.ranks.clone();
-        hand_out(&mut self.processes, state.processes, "processes", |own, state| ranks.agree(own.resume(model, state)))
+        resume_each(&mut self.processes, state.processes, "processes", |own, state| {
+            ranks.agree(own.resume(model, state))
+        })
     }
 
     /// Makes the next step of the deck, in several shorter ones where it does not converge; `false` when none is left.
@@ -227,7 +229,7 @@ impl Stage {
                 target - time
             ));
         }
-        self.reach(target, run).map(|()| true)
+        self.advance_to(target, run).map(|()| true)
     }
 
     /// Finalises the processes, also after a step that has failed, or suspends them where the stage goes on later; the states of
@@ -248,7 +250,7 @@ impl Stage {
         }
         let mut finals = Report::new();
         let processes = &mut self.processes;
-        let finalized = driver.at(Point::Finalize, &self.root, model, &self.system, &mut |model| {
+        let finalized = driver.at(LoopPoint::Finalize, &self.root, model, &self.system, &mut |model| {
             for process in processes.iter_mut() {
                 let finalized = if goes_on { process.suspend(model) } else { process.finalize(model) };
                 finals.absorb(if result.is_ok() { model.ranks.agree(finalized) } else { finalized });

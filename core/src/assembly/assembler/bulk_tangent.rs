@@ -14,8 +14,8 @@ use crate::assembly::System;
 use crate::assembly::bulk_matrix::{BulkPattern, block_numbers};
 use crate::communication::Ranks;
 use crate::diagnostics::Result;
-use crate::entities::{EntityBlock, EntityError, LocalSystems, Tangent, Want};
-use crate::model::{ModelPart, Role};
+use crate::entities::{EntityBlock, EntityError, LocalSystems, Request, Tangent};
+use crate::model::{EntityRole, ModelPart};
 
 /// Factors of mass and damping in a tangent, and Rayleigh's alpha and beta; zeros without inertia.
 pub(super) type InertiaKey = [f64; 4];
@@ -161,7 +161,7 @@ impl BulkTangent {
     ) -> Result<()> {
         let view = part.view();
         for (block, numbers) in self.blocks(system).filter(|(block, _)| wanted(*block)) {
-            let compute = |range, out: &mut LocalSystems| block.local_systems(&view, range, Want::Both, out);
+            let compute = |range, out: &mut LocalSystems| block.local_systems(&view, range, Request::Both, out);
             self.add((block, numbers), values, &compute)?;
         }
         Ok(())
@@ -203,7 +203,7 @@ impl BulkTangent {
             [] => clear(&mut values),
             constant => copy(constant, &mut values),
         }
-        let is_element = |block: &dyn EntityBlock| block.entry().role == Role::Element;
+        let is_element = |block: &dyn EntityBlock| block.entry().role == EntityRole::Element;
         self.add_tangents(
             part,
             system,

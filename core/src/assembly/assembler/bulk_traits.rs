@@ -21,7 +21,7 @@ impl BulkTraits {
         let variable_elements = system.elements.iter().any(|b| is_variable(b.as_ref()));
         let mut flags = [
             variable_elements,
-            system.elements.iter().any(|b| b.tangent() == Tangent::General),
+            system.elements.iter().any(|b| b.tangent() == Tangent::Unsymmetric),
             // Follower loads are not symmetric and have a matrix of their own.
             variable_elements || system.conditions.iter().any(|b| b.tangent() == Tangent::Symmetric),
         ];
@@ -33,5 +33,5 @@ impl BulkTraits {
 
 /// Whether the tangent of a block depends on the state.
 pub(super) fn is_variable(block: &dyn EntityBlock) -> bool {
-    matches!(block.tangent(), Tangent::Symmetric | Tangent::General)
+    matches!(block.tangent(), Tangent::Symmetric | Tangent::Unsymmetric)
 }

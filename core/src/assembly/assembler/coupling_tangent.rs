@@ -7,7 +7,7 @@ use crate::assembly::group_matrix::GroupMatrix;
 use crate::assembly::{DofTable, System};
 use crate::diagnostics::Result;
 use crate::entities::{Coupling, EntityBlock, StepView};
-use crate::model::{Carriers, ModelPart};
+use crate::model::{DofOwners, ModelPart};
 
 /// Matrix of the interactions and the unknowns that are theirs, the multipliers.
 #[derive(Default)]
@@ -23,7 +23,7 @@ pub(super) struct CouplingTangent {
 
 impl CouplingTangent {
     /// No pairs yet; `carriers` are those of the multipliers of each interaction that couples, which are numbered.
-    pub fn new(system: &System, carriers: &[Vec<Carriers>]) -> Self {
+    pub fn new(system: &System, carriers: &[Vec<DofOwners>]) -> Self {
         let dofs = &system.dofs;
         let multipliers: Vec<u32> = (0..dofs.len() as u32).filter(|&n| dofs.dofs()[n as usize].multiplier).collect();
         let mut couplings = vec![0; multipliers.len()];
@@ -107,12 +107,12 @@ impl CouplingTangent {
     }
 
     /// Gives each multiplier without equation a diagonal entry; collective.
-    pub fn set_idle_diagonals(&mut self, part: &ModelPart, system: &System, parallel: &ParallelLayout) {
-        let idle = |own: &dyn Coupling| if own.blocks().is_empty() { 1.0 } else { own.idle_diagonal() };
-        let idle: Vec<f64> = couplings(system).map(idle).collect();
+    pub fn set_inactive_diagonals(&mut self, part: &ModelPart, system: &System, parallel: &ParallelLayout) {
+        let inactive = |own: &dyn Coupling| if own.blocks().is_empty() { 1.0 } else { own.inactive_diagonal() };
+        let inactive: Vec<f64> = couplings(system).map(inactive).collect();
         let mut in_use = self.group.lonely_rows_in_use();
         part.ranks.any_of(&mut in_use);
-        let diagonals = self.couplings.iter().map(|&coupling| idle[coupling]);
+        let diagonals = self.couplings.iter().map(|&coupling| inactive[coupling]);
         self.group.set_idle_diagonal(&in_use, diagonals, |number| parallel.counts(number));
     }
 

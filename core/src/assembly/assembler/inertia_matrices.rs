@@ -8,8 +8,8 @@ use crate::assembly::System;
 use crate::assembly::redistribution::Redistribution;
 use crate::assembly::rows::fill_rows;
 use crate::diagnostics::Result;
-use crate::entities::{EntityBlock, LocalSystems, StepView, Tangent, Want};
-use crate::model::{ModelPart, Nodes, Rates, Role};
+use crate::entities::{EntityBlock, LocalSystems, Request, StepView, Tangent};
+use crate::model::{EntityRole, ModelPart, Nodes, Rates};
 
 /// Values of mass and damping on the pattern of a [`BulkTangent`].
 #[derive(Default)]
@@ -88,7 +88,7 @@ impl InertiaMatrices {
         let mut values = zeros(bulk.entries());
         let mut lasting = true;
         for (block, numbers) in bulk.blocks(system) {
-            let element = block.entry().role == Role::Element;
+            let element = block.entry().role == EntityRole::Element;
             let [alpha, beta] = if element { rayleigh_of(part, block, rayleigh) } else { [0.0, rayleigh[1]] };
             if alpha != 0.0 {
                 let lumped = self.lumped;
@@ -99,12 +99,12 @@ impl InertiaMatrices {
             }
             let stiff = match block.tangent() {
                 Tangent::Zero => false,
-                Tangent::General => element,
+                Tangent::Unsymmetric => element,
                 Tangent::Constant | Tangent::Symmetric => true,
             };
             if beta != 0.0 && stiff {
                 let compute = |range, out: &mut LocalSystems| {
-                    let systems = block.local_systems(&view, range, Want::Both, out);
+                    let systems = block.local_systems(&view, range, Request::Both, out);
                     systems.map(|()| out.lhs.iter_mut().for_each(|k| *k *= beta))
                 };
                 bulk.add((block, numbers), &mut values, &compute)?;

@@ -4,7 +4,7 @@ use super::Assembler;
 use super::coupling_tangent::blocks_of;
 use crate::assembly::local::{each_of_runs, own_runs};
 use crate::assembly::system::System;
-use crate::entities::{EntityBlock, Want};
+use crate::entities::{EntityBlock, Request};
 use crate::model::{EntityTable, ModelPart};
 
 impl Assembler {
@@ -27,7 +27,7 @@ fn first_of(block: &dyn EntityBlock, table: Option<&EntityTable>, part: &ModelPa
         }
     };
     // An entity that cannot be computed has said so already.
-    each_of_runs(block, &view, &runs, Want::Residual, note).ok()?;
+    each_of_runs(block, &view, &runs, Request::Residual, note).ok()?;
     let at = first?;
     let id = table.map(|table| format!(" {}", table.ids[block.members()[at] as usize])).unwrap_or_default();
     let nodes: Vec<String> = block.nodes(at).iter().map(|&node| part.nodes.ids[node as usize].to_string()).collect();

@@ -54,5 +54,10 @@ impl LoadTangent {
 
 /// The conditions whose tangent is not symmetric.
 fn loads_of(system: &System) -> Vec<&dyn EntityBlock> {
-    system.conditions.iter().map(AsRef::as_ref).filter(|b: &&dyn EntityBlock| b.tangent() == Tangent::General).collect()
+    system
+        .conditions
+        .iter()
+        .map(AsRef::as_ref)
+        .filter(|b: &&dyn EntityBlock| b.tangent() == Tangent::Unsymmetric)
+        .collect()
 }

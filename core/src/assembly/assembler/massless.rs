@@ -5,7 +5,7 @@ use crate::assembly::System;
 use crate::assembly::bulk_matrix::add_residual;
 use crate::assembly::redistribution::diagonal;
 use crate::diagnostics::Result;
-use crate::entities::{MasslessNodes, Want};
+use crate::entities::{MasslessNodes, Request};
 use crate::model::{ColumnOf, FIRST, ModelPart, SECOND};
 
 /// Iterations after which the projection stops.
@@ -76,7 +76,7 @@ impl Assembler {
         let u = self.values(part, system);
         let mut forces = vec![0.0; u.len()];
         for (block, numbers) in self.bulk.elements(system) {
-            add_residual(block, numbers, &part.view(), Want::Residual, &mut forces)?;
+            add_residual(block, numbers, &part.view(), Request::Residual, &mut forces)?;
         }
         Ok(0.5 * product(&forces, &u).abs() + self.own_kinetic_energy(part, system)?)
     }
@@ -111,8 +111,8 @@ impl Assembler {
     }
 
     /// Forces on massless unknowns handed on to the nodes below, as their accelerations are.
-    pub fn hand_on(&self, forces: &mut [f64]) {
-        self.inertia.redistribution.hand_on(forces);
+    pub fn redistribute_forces(&self, forces: &mut [f64]) {
+        self.inertia.redistribution.redistribute_forces(forces);
     }
 
     /// The nearest motion that the masses can have: P w with M_r (w − v) = Pᵀ M (v − P v), by conjugate gradients.

@@ -7,7 +7,7 @@ use super::inertia::Inertia;
 use crate::assembly::System;
 use crate::assembly::bulk_matrix::add_residual;
 use crate::diagnostics::Result;
-use crate::entities::{Tangent, Want};
+use crate::entities::{Request, Tangent};
 use crate::model::ModelPart;
 
 impl Assembler {
@@ -56,10 +56,10 @@ impl Assembler {
         for (block, numbers) in self.bulk.blocks(system) {
             match block.tangent() {
                 Tangent::Constant if block.has_external(&view) => {
-                    add_residual(block, numbers, &view, Want::External, &mut rhs)?;
+                    add_residual(block, numbers, &view, Request::External, &mut rhs)?;
                 }
                 Tangent::Constant => {}
-                _ => add_residual(block, numbers, &view, Want::Residual, &mut rhs)?,
+                _ => add_residual(block, numbers, &view, Request::Residual, &mut rhs)?,
             }
         }
         if let Some(inertia) = inertia {
@@ -85,7 +85,7 @@ impl Assembler {
         let view = part.view();
         let mut out = vec![0.0; system.dofs.len()];
         for (block, numbers) in self.bulk.conditions(system) {
-            add_residual(block, numbers, &view, Want::Residual, &mut out)?;
+            add_residual(block, numbers, &view, Request::Residual, &mut out)?;
         }
         Ok(out)
     }

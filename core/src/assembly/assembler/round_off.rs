@@ -5,8 +5,8 @@ use zelus_linear_algebra::vector::{scale_by, zeros};
 
 use super::Assembler;
 use crate::assembly::System;
-use crate::assembly::reach::reach;
 use crate::assembly::rows::ROWS;
+use crate::assembly::runaway_bound::runaway_bound;
 use crate::model::ModelPart;
 
 /// Largest stiffness of an interaction, relative to that of the bodies, that counts in round-off: a stiff penalty adds to the round-off
@@ -17,9 +17,9 @@ impl Assembler {
     /// The round-off of each entry of a residual, from the sizes of the terms that it is a sum of.
     ///
     /// Terms of constant blocks scale with displacements, those of all others with positions. No term is larger than
-    /// stiffness times [`reach`]: bodies that have gone farther, and multipliers that push farther, measure no accuracy.
+    /// stiffness times [`runaway_bound`]: bodies that have gone farther, and multipliers that push farther, measure no accuracy.
     pub fn round_off(&self, part: &ModelPart, system: &System) -> Vec<f64> {
-        let reach = reach(part, &system.dofs, self.equations.map());
+        let runaway_bound = runaway_bound(part, &system.dofs, self.equations.map());
         let before = system.dofs.gather(part, 1);
         let values = self.values(part, system);
         let dofs = system.dofs.dofs();
@@ -28,9 +28,9 @@ impl Assembler {
             value if dofs[n].multiplier => [0.0, 0.0, value, 0.0],
             value if system.dofs.moves_mesh(n) => {
                 let (node, c) = (dofs[n].node as usize, dofs[n].variable.offset());
-                let held = value.min(before[n].abs() + reach);
+                let held = value.min(before[n].abs() + runaway_bound);
                 let farthest = part.nodes.initial[node][c].abs() + held;
-                [held, part.nodes.current[node][c].abs().min(farthest).max(held), 0.0, reach]
+                [held, part.nodes.current[node][c].abs().min(farthest).max(held), 0.0, runaway_bound]
             }
             value => [value, value, 0.0, 0.0],
         };

@@ -5,12 +5,12 @@ use super::coupling_tangent::blocks_of;
 use crate::assembly::System;
 use crate::assembly::bulk_matrix::add_residual;
 use crate::diagnostics::Result;
-use crate::entities::{Tangent, Want};
+use crate::entities::{Request, Tangent};
 use crate::model::ModelPart;
 
 /// Force of an entity between two bodies on one unknown.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Push {
+pub struct PairForce {
     /// Place of the interaction.
     pub interaction: usize,
     /// Place of the pair among its pairs.
@@ -41,15 +41,15 @@ impl Assembler {
         let view = part.view();
         let mut out = vec![0.0; system.dofs.len()];
         for (block, numbers) in self.bulk.elements(system).filter(|of| of.0.has_external(&view)) {
-            add_residual(block, numbers, &view, Want::External, &mut out)?;
+            add_residual(block, numbers, &view, Request::External, &mut out)?;
         }
         for (block, numbers) in self.bulk.conditions(system) {
             match block.tangent() {
                 Tangent::Constant if block.has_external(&view) => {
-                    add_residual(block, numbers, &view, Want::External, &mut out)?;
+                    add_residual(block, numbers, &view, Request::External, &mut out)?;
                 }
                 Tangent::Constant => {}
-                _ => add_residual(block, numbers, &view, Want::Residual, &mut out)?,
+                _ => add_residual(block, numbers, &view, Request::Residual, &mut out)?,
             }
         }
         Ok(out)
@@ -63,7 +63,8 @@ impl Assembler {
         let mut out = vec![0.0; system.dofs.len()];
         let view = part.view();
         let mut stores = self.bulk.elements(system).filter(|(block, _)| block.has_storage());
-        let own = stores.try_for_each(|(block, numbers)| add_residual(block, numbers, &view, Want::Storage, &mut out));
+        let own =
+            stores.try_for_each(|(block, numbers)| add_residual(block, numbers, &view, Request::Storage, &mut out));
         part.ranks.agree(own.map_err(Into::into))?;
         self.parallel.sum(&mut out);
         Ok(out)
@@ -73,13 +74,13 @@ impl Assembler {
     ///
     /// # Errors
     /// An entity that cannot be computed.
-    pub fn exchanged(&self, part: &ModelPart, system: &System, push: impl FnMut(Push)) -> Result<Vec<f64>> {
+    pub fn exchanged(&self, part: &ModelPart, system: &System, push: impl FnMut(PairForce)) -> Result<Vec<f64>> {
         let mut out = part.ranks.agree(self.own_exchanged(part, system, push))?;
         self.parallel.sum(&mut out);
         Ok(out)
     }
 
-    fn own_exchanged(&self, part: &ModelPart, system: &System, mut push: impl FnMut(Push)) -> Result<Vec<f64>> {
+    fn own_exchanged(&self, part: &ModelPart, system: &System, mut push: impl FnMut(PairForce)) -> Result<Vec<f64>> {
         let mut out = vec![0.0; system.dofs.len()];
         // Of each block: the interaction it is of, and its place there.
         let owners = system.interactions.iter().enumerate().filter_map(|(at, own)| Some((at, own.coupling()?)));
@@ -94,7 +95,7 @@ impl Assembler {
                 out[number as usize] += force;
                 if let Some((pair, nodes)) = &pair {
                     let second = nodes.contains(&usize::from(unknown.node));
-                    push(Push { interaction, pair: *pair, second, number, force });
+                    push(PairForce { interaction, pair: *pair, second, number, force });
                 }
             }
         })?;

@@ -51,12 +51,12 @@ impl StepEquations {
                 false => near_null_space(&parallel::map(dofs.len(), ROWS, |at| place(&dofs[at]))),
                 true => Vec::new(),
             },
-            held: parallel::map(dofs.len(), ROWS, |number| !self.map.is_free(number)),
+            inactive: parallel::map(dofs.len(), ROWS, |number| !self.map.is_free(number)),
         };
     }
 
     /// Takes up the same equations, whose slaves may pass forces on to fixed unknowns in another way.
-    pub fn update_leaning(&mut self, map: Equations) {
+    pub fn update_fixed_masters(&mut self, map: Equations) {
         self.map.leaning = map.leaning;
     }
 

@@ -21,7 +21,7 @@ impl Assembler {
         let start = Instant::now();
         // Damped unknowns without rates may be on other ranks only.
         self.bulk.agree_on_symmetry(&part.ranks);
-        self.coupling.set_idle_diagonals(part, system, &self.parallel);
+        self.coupling.set_inactive_diagonals(part, system, &self.parallel);
         self.stamps.coupling_values += 1;
         self.seconds.coupling += start.elapsed().as_secs_f64();
         Ok(())

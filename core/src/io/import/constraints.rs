@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use super::Import;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::entities::{ConstraintEntry, ConstraintRow};
-use crate::io::variables::unknown_variable;
+use crate::io::variable_names::unknown_variable;
 use crate::model::{ModelPart, Named, ScalarVariable, VariableKind, named};
 use crate::registry;
 

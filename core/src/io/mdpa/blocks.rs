@@ -1,10 +1,10 @@
 //! The bodies of the blocks of an mdpa file.
 
-use super::document::*;
-use super::reader::{Open, Reader, text};
+use super::mdpa_document::*;
+use super::reader::{MdpaReader, OpenBlock, text};
 use super::tokens::parse_prefix;
 use crate::diagnostics::{Diagnostic, did_you_mean};
-use crate::model::Role;
+use crate::model::EntityRole;
 use crate::registry::instead_of;
 
 /// Sub model parts may be nested this deep.
@@ -22,8 +22,8 @@ const PART_BLOCKS: [&str; 9] = [
     "SubModelPart",
 ];
 
-impl Reader<'_> {
-    pub(super) fn nodes(&mut self, open: Open) {
+impl MdpaReader<'_> {
+    pub(super) fn nodes(&mut self, open: OpenBlock) {
         while let Some(id) = self.row(open) {
             let line = self.tokens.line;
             let mut position = [0.0; 3];
@@ -40,13 +40,13 @@ impl Reader<'_> {
         }
     }
 
-    pub(super) fn entities(&mut self, open: Open) {
+    pub(super) fn entities(&mut self, open: OpenBlock) {
         let Some(name) = self.heading(open, "the name of an element, condition or geometry") else {
             return self.skip_block(open);
         };
         let Some(nodes_per_entity) = (self.names.nodes_of)(&name) else {
             let fact = format!("`{name}` is not registered ({})", open.kind);
-            let sort = if open.kind == "Conditions" { Role::Condition } else { Role::Element };
+            let sort = if open.kind == "Conditions" { EntityRole::Condition } else { EntityRole::Element };
             let instead = instead_of(sort.word(), &name).map(str::to_owned);
             let remedy = instead.or_else(|| did_you_mean(&name, self.names.known.iter().copied()));
             let remedy = remedy.unwrap_or_else(|| "`zelus list` shows the registered names".to_owned());
@@ -54,7 +54,7 @@ impl Reader<'_> {
             return self.skip_block(open);
         };
         let has_properties = open.kind != "Geometries";
-        let mut block = EntityBlock { name, nodes_per_entity, line: Line(open.line), ..Default::default() };
+        let mut block = MdpaEntities { name, nodes_per_entity, line: Line(open.line), ..Default::default() };
         let mut lines = Vec::new();
         while let Some(id) = self.row(open) {
             let line = self.tokens.line;
@@ -88,7 +88,7 @@ impl Reader<'_> {
         all_lines.push(lines);
     }
 
-    pub(super) fn constraints(&mut self, open: Open) {
+    pub(super) fn constraints(&mut self, open: OpenBlock) {
         let Some(name) = self.heading(open, "the name of a constraint") else { return self.skip_block(open) };
         let Some(first) = self.heading(open, "a variable") else { return self.skip_block(open) };
         let mut block = ConstraintBlock { name, variables: vec![first], line: Line(open.line), ..Default::default() };
@@ -119,7 +119,7 @@ impl Reader<'_> {
         self.lines.constraints.push(lines);
     }
 
-    pub(super) fn data(&mut self, open: Open) {
+    pub(super) fn data(&mut self, open: OpenBlock) {
         let Some(variable) = self.heading(open, "a variable") else { return self.skip_block(open) };
         let mut column = (self.names.is_flag)(&variable).then_some(DataColumn::Flag);
         let nodal = open.kind == "NodalData";
@@ -144,7 +144,7 @@ impl Reader<'_> {
     }
 
     /// The value after the id in a row of data; returns whether it was good. The first row decides the type of the column.
-    fn data_row(&mut self, open: Open, id: u32, nodal: bool, column: &mut Option<DataColumn>) -> bool {
+    fn data_row(&mut self, open: OpenBlock, id: u32, nodal: bool, column: &mut Option<DataColumn>) -> bool {
         let line = self.tokens.line;
         let mut is_fixed = false;
         if nodal {
@@ -201,14 +201,14 @@ impl Reader<'_> {
         }
     }
 
-    fn mixed_shapes(&mut self, line: u32, open: Open) -> bool {
+    fn mixed_shapes(&mut self, line: u32, open: OpenBlock) -> bool {
         let fact = format!("a value whose shape differs from the first one of the block {}", open.kind);
         self.problems.error(line, "mixed-shapes", fact);
         false
     }
 
     /// `[n] (a,…)` or `[m,n] ((a,…),…)`; reported when wrong.
-    fn bracketed(&mut self, open: Open) -> Option<DataValue> {
+    fn bracketed(&mut self, open: OpenBlock) -> Option<DataValue> {
         let mut shape = Vec::new();
         let shape_read = self.list(b'[', b']', &mut shape);
         let (mut values, mut rows) = (Vec::new(), 0);
@@ -262,13 +262,18 @@ impl Reader<'_> {
     }
 
     /// `NAME value` pairs and, where `tables` is given, tables.
-    pub(super) fn entries(&mut self, open: Open, entries: &mut Vec<DataEntry>, mut tables: Option<&mut Vec<Table>>) {
+    pub(super) fn entries(
+        &mut self,
+        open: OpenBlock,
+        entries: &mut Vec<DataEntry>,
+        mut tables: Option<&mut Vec<MdpaTable>>,
+    ) {
         while !self.ends(open) {
             let Some(name) = self.tokens.word().map(text) else { continue };
             let line = self.tokens.line;
             if name == "Begin" {
-                let Some(kind) = self.heading(Open { kind: "Begin", line }, "the kind of block") else { continue };
-                let inner = Open { kind: &kind, line };
+                let Some(kind) = self.heading(OpenBlock { kind: "Begin", line }, "the kind of block") else { continue };
+                let inner = OpenBlock { kind: &kind, line };
                 match tables.as_deref_mut() {
                     Some(tables) if kind == "Table" => tables.extend(self.table(inner, None)),
                     Some(_) => {
@@ -303,7 +308,7 @@ impl Reader<'_> {
         }
     }
 
-    pub(super) fn table(&mut self, open: Open, id: Option<u32>) -> Option<Table> {
+    pub(super) fn table(&mut self, open: OpenBlock, id: Option<u32>) -> Option<MdpaTable> {
         let variables = self.heading(open, "the variable of the argument").zip(self.heading(open, "two variables"));
         let Some((input_variable, output_variable)) = variables else {
             self.skip_block(open);
@@ -320,10 +325,10 @@ impl Reader<'_> {
             let Some(y) = self.number("a number", open) else { continue };
             rows.push([x, y]);
         }
-        Some(Table { id, input_variable, output_variable, rows, line: Line(open.line) })
+        Some(MdpaTable { id, input_variable, output_variable, rows, line: Line(open.line) })
     }
 
-    pub(super) fn sub_model_part(&mut self, open: Open, siblings: &mut Vec<SubModelPart>) {
+    pub(super) fn sub_model_part(&mut self, open: OpenBlock, siblings: &mut Vec<SubModelPart>) {
         let Some(name) = self.heading(open, "a name") else { return self.skip_block(open) };
         if let Some(first) = siblings.iter().find(|part| part.name == name) {
             let fact = format!("the sub model part {name} is already defined in line {}", first.line.0);
@@ -340,8 +345,8 @@ impl Reader<'_> {
                 self.tokens.skip_line();
                 continue;
             }
-            let Some(kind) = self.heading(Open { kind: "Begin", line }, "the kind of block") else { continue };
-            let inner = Open { kind: &kind, line };
+            let Some(kind) = self.heading(OpenBlock { kind: "Begin", line }, "the kind of block") else { continue };
+            let inner = OpenBlock { kind: &kind, line };
             match kind.as_str() {
                 "SubModelPartData" => self.entries(inner, &mut part.data, None),
                 "SubModelPartTables" => self.ids(inner, &mut part.tables),
@@ -371,7 +376,7 @@ impl Reader<'_> {
         siblings.push(part);
     }
 
-    fn ids(&mut self, open: Open, ids: &mut Vec<u32>) {
+    fn ids(&mut self, open: OpenBlock, ids: &mut Vec<u32>) {
         while let Some(id) = self.row(open) {
             ids.push(id);
         }

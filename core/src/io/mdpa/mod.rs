@@ -5,9 +5,9 @@
 //! document keeps the order of the file; sorting by id and the meaning of variables belong to who uses it.
 
 mod blocks;
-mod check;
-mod document;
-mod problems;
+mod mdpa_check;
+mod mdpa_document;
+mod mdpa_problems;
 mod reader;
 #[cfg(test)]
 mod tests;
@@ -15,7 +15,7 @@ mod tokens;
 mod writer;
 
 pub use blocks::DEPTH;
-pub use document::*;
+pub use mdpa_document::*;
 pub use reader::{EntityNames, read, read_bytes};
 pub use tokens::number_prefix;
 pub use writer::{write, write_to};

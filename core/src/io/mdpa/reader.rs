@@ -1,9 +1,9 @@
 //! From the text of an mdpa file to the document.
 
-use super::document::*;
-use super::problems::Problems;
+use super::mdpa_document::*;
+use super::mdpa_problems::Problems;
 use super::tokens::{Number, Tokens, parse_prefix};
-use super::{check, check::Lines};
+use super::{mdpa_check, mdpa_check::Lines};
 use crate::diagnostics::{Diagnostic, Error, Place, Result, did_you_mean};
 use std::path::Path;
 
@@ -38,7 +38,7 @@ pub fn read(path: &Path, names: &EntityNames) -> Result<(MdpaDocument, Vec<Diagn
 /// # Errors
 /// As [`read`].
 pub fn read_bytes(bytes: &[u8], path: &Path, names: &EntityNames) -> Result<(MdpaDocument, Vec<Diagnostic>)> {
-    let mut reader = Reader {
+    let mut reader = MdpaReader {
         tokens: Tokens::new(bytes),
         names,
         problems: Problems::new(path),
@@ -47,20 +47,20 @@ pub fn read_bytes(bytes: &[u8], path: &Path, names: &EntityNames) -> Result<(Mdp
         depth: 0,
     };
     reader.file();
-    let Reader { mut problems, mut document, lines, .. } = reader;
-    check::check(&mut document, &lines, &mut problems);
+    let MdpaReader { mut problems, mut document, lines, .. } = reader;
+    mdpa_check::check(&mut document, &lines, &mut problems);
     Ok((document, problems.finish()?))
 }
 
 /// A block that is being read: its kind and the line where it begins.
 #[derive(Clone, Copy)]
-pub(super) struct Open<'a> {
+pub(super) struct OpenBlock<'a> {
     pub(super) kind: &'a str,
     pub(super) line: u32,
 }
 
 /// Contents read so far, and the present position.
-pub(super) struct Reader<'a> {
+pub(super) struct MdpaReader<'a> {
     pub(super) tokens: Tokens<'a>,
     pub(super) names: &'a EntityNames<'a>,
     pub(super) problems: Problems<'a>,
@@ -91,7 +91,7 @@ pub(super) fn text(word: &[u8]) -> String {
     String::from_utf8_lossy(word).into_owned()
 }
 
-impl<'a> Reader<'a> {
+impl<'a> MdpaReader<'a> {
     fn file(&mut self) {
         while !self.problems.full() {
             let Some(word) = self.tokens.word() else { break };
@@ -103,8 +103,8 @@ impl<'a> Reader<'a> {
                     Diagnostic::error("outside-block", fact).remedy("a block is `Begin NAME` … `End NAME`"),
                 );
                 self.tokens.skip_line();
-            } else if let Some(kind) = self.heading(Open { kind: "Begin", line }, "the kind of block") {
-                self.block(Open { kind: &kind, line });
+            } else if let Some(kind) = self.heading(OpenBlock { kind: "Begin", line }, "the kind of block") {
+                self.block(OpenBlock { kind: &kind, line });
             }
         }
         if let Some(line) = self.tokens.open_comment {
@@ -112,7 +112,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn block(&mut self, open: Open) {
+    fn block(&mut self, open: OpenBlock) {
         match open.kind {
             "ModelPartData" => {
                 let mut entries = std::mem::take(&mut self.document.model_part_data);
@@ -162,7 +162,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Skips the rest of a block and of the blocks in it.
-    pub(super) fn skip_block(&mut self, open: Open) {
+    pub(super) fn skip_block(&mut self, open: OpenBlock) {
         let mut depth = 1;
         while let Some(word) = self.tokens.word() {
             match word {
@@ -178,14 +178,14 @@ impl<'a> Reader<'a> {
         self.cut_off(open);
     }
 
-    fn cut_off(&mut self, open: Open) {
+    fn cut_off(&mut self, open: OpenBlock) {
         let fact = format!("the file ends inside the block {} that begins here", open.kind);
         let remedy = format!("the file may be cut off; the block is closed by `End {}`", open.kind);
         self.problems.push(open.line, Diagnostic::error("cut-off", fact).remedy(remedy));
     }
 
     /// A word of the heading of a block; nothing, said, when there is none.
-    pub(super) fn heading(&mut self, open: Open, what: &str) -> Option<String> {
+    pub(super) fn heading(&mut self, open: OpenBlock, what: &str) -> Option<String> {
         let word = self.tokens.peek().filter(|word| !matches!(*word, b"Begin" | b"End")).map(text);
         if word.is_some() {
             self.tokens.word();
@@ -196,7 +196,7 @@ impl<'a> Reader<'a> {
         word
     }
 
-    fn heading_id(&mut self, open: Open) -> Option<u32> {
+    fn heading_id(&mut self, open: OpenBlock) -> Option<u32> {
         let word = self.heading(open, "an id")?;
         let id = parse_prefix(word.as_bytes()).map(|(value, _)| value).filter(|v| *v >= 0.0 && *v <= u32::MAX.into());
         if id.is_none() {
@@ -207,7 +207,7 @@ impl<'a> Reader<'a> {
     }
 
     /// Whether the block ends here; its `End` is then behind us. Says so when it ends in a wrong way.
-    pub(super) fn ends(&mut self, open: Open) -> bool {
+    pub(super) fn ends(&mut self, open: OpenBlock) -> bool {
         let Some(word) = self.tokens.peek() else {
             self.cut_off(open);
             return true;
@@ -229,7 +229,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The id a row begins with, or nothing at the end of the block; rows without one are reported and passed over.
-    pub(super) fn row(&mut self, open: Open) -> Option<u32> {
+    pub(super) fn row(&mut self, open: OpenBlock) -> Option<u32> {
         loop {
             if let Some(id) = self.tokens.integer() {
                 self.said_whole(id.whole, &id.value);
@@ -250,7 +250,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    pub(super) fn bad_number(&mut self, what: &str, open: Open) {
+    pub(super) fn bad_number(&mut self, what: &str, open: OpenBlock) {
         // The end of a block and of the file are reported by who looks for the next row.
         let Some(word) = self.tokens.peek() else { return };
         let line = self.tokens.line;
@@ -275,7 +275,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    pub(super) fn integer(&mut self, what: &str, open: Open) -> Option<u32> {
+    pub(super) fn integer(&mut self, what: &str, open: OpenBlock) -> Option<u32> {
         let read = self.tokens.integer();
         match read {
             Some(Number { value, whole }) => self.said_whole(whole, &value),
@@ -284,7 +284,7 @@ impl<'a> Reader<'a> {
         read.map(|number| number.value)
     }
 
-    pub(super) fn number(&mut self, what: &str, open: Open) -> Option<f64> {
+    pub(super) fn number(&mut self, what: &str, open: OpenBlock) -> Option<f64> {
         let read = self.tokens.number();
         match read {
             Some(Number { value, whole }) => self.said_whole(whole, &value),

@@ -1,6 +1,6 @@
 //! From the document to the text of an mdpa file.
 
-use super::document::*;
+use super::mdpa_document::*;
 use crate::diagnostics::Result;
 use crate::io::replace_own_file;
 use std::io::{self, Write};
@@ -92,7 +92,7 @@ fn entries(entries: &[DataEntry], indent: &str, out: &mut impl Write) -> io::Res
     Ok(())
 }
 
-fn table(table: &Table, indent: &str, out: &mut impl Write) -> io::Result<()> {
+fn table(table: &MdpaTable, indent: &str, out: &mut impl Write) -> io::Result<()> {
     let id = table.id.map(|id| format!("{id} ")).unwrap_or_default();
     writeln!(out, "{indent}Begin Table {id}{} {}", table.input_variable, table.output_variable)?;
     for [x, y] in &table.rows {
@@ -101,7 +101,7 @@ fn table(table: &Table, indent: &str, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "{indent}End Table{}", if indent.is_empty() { "\n" } else { "" })
 }
 
-fn entities(kind: &str, block: &EntityBlock, out: &mut impl Write) -> io::Result<()> {
+fn entities(kind: &str, block: &MdpaEntities, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "Begin {kind} {}", block.name)?;
     for (i, id) in block.ids.iter().enumerate() {
         write!(out, "    {id}")?;

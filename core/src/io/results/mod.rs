@@ -5,9 +5,9 @@
 mod dataset;
 mod gid;
 mod number;
-mod pieces;
+mod gathered_dataset;
 mod pvtu;
-mod read;
+mod vtu_reader;
 #[cfg(test)]
 mod tests;
 mod vtk;
@@ -16,6 +16,6 @@ mod vtu;
 pub use dataset::{Cells, Column, Dataset, Values};
 pub use gid::{GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step};
 pub use pvtu::write_pvtu;
-pub use read::{read_pvd, read_vtu, vtu_of};
 pub use vtk::{VtkFormat, write_vtk};
 pub use vtu::{PvdFile, escape, write_piece, write_pvd, write_vtu};
+pub use vtu_reader::{read_pvd, read_vtu, vtu_of};

@@ -46,7 +46,7 @@ pub struct ExpressionError {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Variable {
+enum ExpressionVariable {
     Current(usize),
     Initial(usize),
     Time,
@@ -71,7 +71,7 @@ enum Operator {
 #[derive(Debug, Clone, Copy)]
 enum Op {
     Push(f64),
-    Load(Variable),
+    Load(ExpressionVariable),
     Negate,
     Binary(Operator),
     One(fn(f64) -> f64),
@@ -158,21 +158,23 @@ impl Expression {
 
     /// Whether the value depends on the position.
     pub fn uses_space(&self) -> bool {
-        self.code.iter().any(|op| matches!(op, Op::Load(Variable::Current(_) | Variable::Initial(_))))
+        self.code
+            .iter()
+            .any(|op| matches!(op, Op::Load(ExpressionVariable::Current(_) | ExpressionVariable::Initial(_))))
     }
 
     /// Whether the value depends on the time.
     pub fn uses_time(&self) -> bool {
-        self.code.iter().any(|op| matches!(op, Op::Load(Variable::Time)))
+        self.code.iter().any(|op| matches!(op, Op::Load(ExpressionVariable::Time)))
     }
 }
 
 impl SpaceTime {
-    fn get(&self, variable: Variable) -> f64 {
+    fn get(&self, variable: ExpressionVariable) -> f64 {
         match variable {
-            Variable::Current(i) => self.current[i],
-            Variable::Initial(i) => self.initial[i],
-            Variable::Time => self.time,
+            ExpressionVariable::Current(i) => self.current[i],
+            ExpressionVariable::Initial(i) => self.initial[i],
+            ExpressionVariable::Time => self.time,
         }
     }
 }

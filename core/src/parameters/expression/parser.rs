@@ -10,20 +10,20 @@
 //! ```
 
 use super::functions::{CONSTANTS, FUNCTIONS, Function};
-use super::{ExpressionError, Op, Operator, STACK, Variable};
+use super::{ExpressionError, ExpressionVariable, Op, Operator, STACK};
 use crate::diagnostics::did_you_mean;
 
 /// Parentheses and signs may be nested this deep.
 const DEPTH: usize = 100;
 
-const VARIABLES: [(&str, Variable); 7] = [
-    ("x", Variable::Current(0)),
-    ("y", Variable::Current(1)),
-    ("z", Variable::Current(2)),
-    ("X", Variable::Initial(0)),
-    ("Y", Variable::Initial(1)),
-    ("Z", Variable::Initial(2)),
-    ("t", Variable::Time),
+const VARIABLES: [(&str, ExpressionVariable); 7] = [
+    ("x", ExpressionVariable::Current(0)),
+    ("y", ExpressionVariable::Current(1)),
+    ("z", ExpressionVariable::Current(2)),
+    ("X", ExpressionVariable::Initial(0)),
+    ("Y", ExpressionVariable::Initial(1)),
+    ("Z", ExpressionVariable::Initial(2)),
+    ("t", ExpressionVariable::Time),
 ];
 
 pub(super) fn compile(text: &str) -> Result<Vec<Op>, ExpressionError> {

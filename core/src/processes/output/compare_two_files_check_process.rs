@@ -3,7 +3,7 @@
 use crate::assembly::System;
 use std::path::{Path, PathBuf};
 
-use super::place::one_of;
+use super::part_path::one_of;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::io::FileUse;
 use crate::model::{Model, ModelPart};

@@ -1,13 +1,13 @@
 //! In which steps output is written.
 
-use super::place::one_of;
+use super::part_path::one_of;
 use crate::diagnostics::Result;
 use crate::model::ProcessInfo;
 use crate::parameters::Settings;
 
 /// Unit of intervals of output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Unit {
+pub(super) enum IntervalUnit {
     Step,
     Time,
 }
@@ -17,7 +17,7 @@ pub(super) enum Unit {
 /// Steps of 0.1 with an interval of 0.2 in time are thus written at 0.2, 0.4, 0.7, 0.9: the sum of floats decides.
 #[derive(Debug, Clone)]
 pub(super) struct OutputControl {
-    pub(super) unit: Unit,
+    pub(super) unit: IntervalUnit,
     interval: f64,
     /// When output is wanted next.
     pub(super) next: f64,
@@ -28,7 +28,7 @@ impl OutputControl {
     pub(super) fn new(settings: &Settings, prefix: &str) -> Result<Self> {
         let kind = one_of(settings, &format!("{prefix}output_control_type"), &["step", "time"])?;
         let interval = settings.get_f64(&format!("{prefix}output_interval"))?;
-        let mut control = Self { unit: [Unit::Step, Unit::Time][kind], interval, next: 0.0 };
+        let mut control = Self { unit: [IntervalUnit::Step, IntervalUnit::Time][kind], interval, next: 0.0 };
         control.advance(0.0);
         Ok(control)
     }
@@ -51,8 +51,8 @@ impl OutputControl {
 
     fn now(&self, info: &ProcessInfo) -> f64 {
         match self.unit {
-            Unit::Step => info.step as f64,
-            Unit::Time => info.time,
+            IntervalUnit::Step => info.step as f64,
+            IntervalUnit::Time => info.time,
         }
     }
 }

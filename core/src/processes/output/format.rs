@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
 use crate::diagnostics::Result;
 use crate::io::Mark;
@@ -14,14 +14,14 @@ use crate::parameters::Settings;
 use crate::{register, registered_kind};
 
 /// A picture of a model part in one step, for a format to write.
-pub struct Shown<'a> {
+pub struct OutputFrame<'a> {
     /// The part, for its step data and the share of a rank.
     pub part: &'a ModelPart,
     /// Points, cells and columns; of several ranks the share of this one.
     pub data: &'a Dataset,
     /// Surfaces of interfaces beside the mesh; none where the deck does not ask for them, or the format has none
     /// ([`OutputFormat::has_surfaces`]).
-    pub surfaces: &'a [ShownSurface],
+    pub surfaces: &'a [SurfaceFrame],
     /// Folder of the files.
     pub folder: &'a Path,
     /// Name of the pictures of one part.
@@ -33,7 +33,7 @@ pub struct Shown<'a> {
 }
 
 /// The surface of an interface in one step. Every rank has it whole.
-pub struct ShownSurface {
+pub struct SurfaceFrame {
     /// Its place among the interfaces of the stage, from 0.
     pub number: usize,
     /// Its name.
@@ -54,7 +54,7 @@ pub trait OutputFormat: Send {
     ///
     /// # Errors
     /// A file that cannot be written.
-    fn write(&mut self, shown: &Shown<'_>) -> Result<()>;
+    fn write(&mut self, frame: &OutputFrame<'_>) -> Result<()>;
 
     /// Endings of its files, the first being that of each picture; those of an earlier run are removed before the first is written.
     fn endings(&self) -> &'static [&'static str];
@@ -110,18 +110,18 @@ registered_kind! {
 struct Legacy(VtkFormat);
 
 impl OutputFormat for Legacy {
-    fn write(&mut self, shown: &Shown<'_>) -> Result<()> {
-        let path = |series: &str| shown.folder.join(format!("{series}_0_{}.vtk", shown.label));
-        let ranks = &shown.part.ranks;
-        for surface in shown.surfaces {
-            let series = format!("{}_{}", surface_series(shown.series), surface.number);
+    fn write(&mut self, frame: &OutputFrame<'_>) -> Result<()> {
+        let path = |series: &str| frame.folder.join(format!("{series}_0_{}.vtk", frame.label));
+        let ranks = &frame.part.ranks;
+        for surface in frame.surfaces {
+            let series = format!("{}_{}", surface_series(frame.series), surface.number);
             write_vtk(ranks, &path(&series), &surface.data, self.0)?;
         }
-        let path = path(shown.series);
-        if shown.part.share.is_some() {
-            return write_vtk(ranks, &path, &shown.data.gathered(ranks), self.0);
+        let path = path(frame.series);
+        if frame.part.share.is_some() {
+            return write_vtk(ranks, &path, &frame.data.gathered(ranks), self.0);
         }
-        write_vtk(ranks, &path, shown.data, self.0)
+        write_vtk(ranks, &path, frame.data, self.0)
     }
 
     fn endings(&self) -> &'static [&'static str] {
@@ -149,32 +149,32 @@ stored_as_bytes!(Vtu);
 
 #[typetag::serde(name = "vtu")]
 impl State for Vtu {
-    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+    fn remap(&mut self, _mapper: &mut dyn StateMapper) {}
 }
 
 impl Vtu {
     /// Writes a VTU file, or one a rank and a PVTU file that lists them; returns the name of the file to open. Collective.
     ///
     /// Ranks without cells and points write nothing, unless all are without. The list is written once all that it lists is.
-    fn write_file(shown: &Shown<'_>) -> Result<String> {
-        let (own, name) = (shown.data, format!("{}_{}", shown.series, shown.label));
-        let ranks = &shown.part.ranks;
-        if shown.part.share.is_none() {
+    fn write_file(frame: &OutputFrame<'_>) -> Result<String> {
+        let (own, name) = (frame.data, format!("{}_{}", frame.series, frame.label));
+        let ranks = &frame.part.ranks;
+        if frame.part.share.is_none() {
             let file = format!("{name}.vtu");
-            write_vtu(ranks, &shown.folder.join(&file), own)?;
+            write_vtu(ranks, &frame.folder.join(&file), own)?;
             return Ok(file);
         }
         let piece_file = |rank: usize| format!("{name}_{rank}.vtu");
         let is_empty = !ranks.any(!own.points.is_empty());
         let is_needed = !own.points.is_empty() || (is_empty && ranks.is_root());
-        let path = shown.folder.join(piece_file(ranks.rank()));
+        let path = frame.folder.join(piece_file(ranks.rank()));
         ranks.agree(if is_needed { write_piece(&path, own) } else { Ok(()) })?;
         let mut has_piece = vec![false; ranks.size()];
         has_piece[ranks.rank()] = is_needed;
         ranks.any_of(&mut has_piece);
         let pieces: Vec<String> = (0..ranks.size()).filter(|&rank| has_piece[rank]).map(piece_file).collect();
         let file = format!("{name}.pvtu");
-        write_pvtu(ranks, &shown.folder.join(&file), own, &pieces)?;
+        write_pvtu(ranks, &frame.folder.join(&file), own, &pieces)?;
         Ok(file)
     }
 }
@@ -189,17 +189,17 @@ impl OutputFormat for Vtu {
         Ok(())
     }
 
-    fn write(&mut self, shown: &Shown<'_>) -> Result<()> {
-        let (ranks, time) = (&shown.part.ranks, shown.time);
-        let mut files = vec![PvdFile { time, part: 0, name: String::new(), file: Self::write_file(shown)? }];
-        for (at, surface) in shown.surfaces.iter().enumerate() {
-            let file = format!("{}_{}_{}.vtu", surface_series(shown.series), surface.number, shown.label);
-            write_vtu(ranks, &shown.folder.join(&file), &surface.data)?;
+    fn write(&mut self, frame: &OutputFrame<'_>) -> Result<()> {
+        let (ranks, time) = (&frame.part.ranks, frame.time);
+        let mut files = vec![PvdFile { time, part: 0, name: String::new(), file: Self::write_file(frame)? }];
+        for (at, surface) in frame.surfaces.iter().enumerate() {
+            let file = format!("{}_{}_{}.vtu", surface_series(frame.series), surface.number, frame.label);
+            write_vtu(ranks, &frame.folder.join(&file), &surface.data)?;
             files.push(PvdFile { time, part: at + 1, name: surface.name.clone(), file });
         }
-        let steps = self.series.entry(shown.series.to_owned()).or_default();
+        let steps = self.series.entry(frame.series.to_owned()).or_default();
         steps.extend(files);
-        write_pvd(ranks, &shown.folder.join(format!("{}.pvd", shown.series)), steps)
+        write_pvd(ranks, &frame.folder.join(format!("{}.pvd", frame.series)), steps)
     }
 
     fn endings(&self) -> &'static [&'static str] {

@@ -4,17 +4,17 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
 use super::control::TimeCounter;
 use super::gauss;
 use super::json_output_process::{node_key, passes};
-use super::place::{PartPath, file_of};
+use super::part_path::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::io::FileUse;
-use crate::model::{Model, ModelPart, Role, SubPart, Table};
+use crate::model::{EntityRole, Model, ModelPart, SubPart, Table};
 use crate::parameters::Defaults;
 use crate::processes::comparison::{is_close, told};
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
@@ -118,7 +118,7 @@ impl FromJsonCheck {
             }
         }
         for quantity in &self.gauss {
-            gauss::each(part, system, Role::Element, &selection.elements, quantity, |row, gauss| {
+            gauss::each(part, system, EntityRole::Element, &selection.elements, quantity, |row, gauss| {
                 let element = selection.elements[row];
                 if !passes(&part.elements.flags, self.flag, element) {
                     return;
@@ -165,7 +165,7 @@ stored_as_bytes!(SavedCounter);
 
 #[typetag::serde(name = "from_json_check_result")]
 impl State for SavedCounter {
-    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+    fn remap(&mut self, _mapper: &mut dyn StateMapper) {}
 }
 
 impl Process for FromJsonCheck {

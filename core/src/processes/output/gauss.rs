@@ -10,7 +10,7 @@ use crate::communication::Ranks;
 use crate::entities::{EntityBlock, Gauss, StepView};
 use crate::geometry::Shape;
 use crate::io::results::{Column, GaussResult};
-use crate::model::{ModelPart, Role};
+use crate::model::{EntityRole, ModelPart};
 
 /// Not in the selection.
 const OUT: u32 = u32::MAX;
@@ -23,7 +23,7 @@ struct Seen<'a> {
 }
 
 /// Whether a block of this rank knows the quantity.
-pub(super) fn is_known(system: &System, kind: Role, quantity: &GaussQuantity) -> bool {
+pub(super) fn is_known(system: &System, kind: EntityRole, quantity: &GaussQuantity) -> bool {
     let names = [Some(quantity.name.as_str()), quantity.vector.as_deref()];
     let knows = |known: &[&str]| names.into_iter().flatten().any(|name| known.contains(&name));
     system.blocks(kind).iter().any(|block| knows(block.gauss_variables()))
@@ -34,7 +34,7 @@ pub(super) fn is_known(system: &System, kind: Role, quantity: &GaussQuantity) ->
 fn visit(
     part: &ModelPart,
     system: &System,
-    kind: Role,
+    kind: EntityRole,
     selected: &[u32],
     quantity: &GaussQuantity,
     mut visit: impl FnMut(usize, &Seen<'_>, &Gauss),
@@ -78,7 +78,7 @@ fn values_of(block: &dyn EntityBlock, view: &StepView<'_>, name: &str, at: usize
 pub(super) fn means(
     part: &ModelPart,
     system: &System,
-    kind: Role,
+    kind: EntityRole,
     selected: &[u32],
     quantity: &GaussQuantity,
 ) -> Column {
@@ -101,7 +101,7 @@ pub(super) fn means(
 
 /// Weight of a Gauss point in means.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Share {
+pub(super) enum GaussWeight {
     /// The volume it stands for.
     Volume,
     /// Alike.
@@ -113,11 +113,11 @@ pub(super) enum Share {
 pub(super) fn at_nodes(
     part: &ModelPart,
     system: &System,
-    kind: Role,
+    kind: EntityRole,
     selected: &[u32],
     nodes: &[u32],
     quantity: &GaussQuantity,
-    share: Share,
+    share: GaussWeight,
 ) -> Column {
     let mut components = 0;
     let mut sums: Vec<f64> = Vec::new();
@@ -134,7 +134,7 @@ pub(super) fn at_nodes(
         for (point, weight) in gauss.weights.iter().enumerate() {
             let values = &gauss.values[point * gauss.components..][..gauss.components];
             for (&node, shape) in own.iter().zip(&gauss.shape[point * own.len()..]) {
-                let share = if share == Share::Volume { weight * shape.abs() } else { shape.abs() };
+                let share = if share == GaussWeight::Volume { weight * shape.abs() } else { shape.abs() };
                 weights[node as usize] += share;
                 let sum = &mut sums[node as usize * components..][..gauss.components];
                 sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
@@ -174,7 +174,7 @@ fn widen(values: &[f64], from: usize, to: usize, rows: usize) -> Vec<f64> {
 pub(super) fn as_they_are(
     part: &ModelPart,
     system: &System,
-    kind: Role,
+    kind: EntityRole,
     selected: &[u32],
     ids: &[usize],
     quantity: &GaussQuantity,
@@ -275,7 +275,7 @@ fn local_points(shape: Shape, gauss: &Gauss) -> Vec<[f64; 3]> {
 pub(super) fn each(
     part: &ModelPart,
     system: &System,
-    kind: Role,
+    kind: EntityRole,
     selected: &[u32],
     quantity: &GaussQuantity,
     mut use_values: impl FnMut(usize, &Gauss),

@@ -4,12 +4,12 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
 use super::control::OutputControl;
 use super::gauss;
-use super::picture::{CellChoice, Mesh};
-use super::place::{PartPath, append, one_of, warn_unused};
+use super::output_columns::{CellChoice, Mesh};
+use super::part_path::{PartPath, append, one_of, warn_unused};
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
 use crate::assembly::System;
 use crate::communication::Ranks;
@@ -18,7 +18,7 @@ use crate::io::results::{
     Column, Dataset, GaussResult, GidKind, write_gid_mesh, write_gid_results_head, write_gid_step,
 };
 use crate::io::{FileUse, Mark, append_to_file, cut_file, length_of, replace_file};
-use crate::model::{Model, ModelPart, Role, SubPart};
+use crate::model::{EntityRole, Model, ModelPart, SubPart};
 use crate::parameters::{Defaults, Settings};
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
@@ -155,7 +155,7 @@ impl GidOutput {
         columns.extend(self.values.iter().map(|q| q.gather(&part.nodes.values, nodes)));
         columns.extend(self.flags.iter().map(|flag| flag_column(&part.nodes.flags, flag, nodes)));
         let gauss = self.gauss.iter().flat_map(|quantity| {
-            gauss::as_they_are(part, system, Role::Element, &selection.elements, &part.elements.ids, quantity)
+            gauss::as_they_are(part, system, EntityRole::Element, &selection.elements, &part.elements.ids, quantity)
         });
         let gauss = if self.elements { gauss.collect() } else { Vec::new() };
         let ids: Vec<usize> = nodes.iter().map(|&node| part.nodes.ids[node as usize]).collect();
@@ -198,7 +198,7 @@ stored_as_bytes!(GidOutputState);
 
 #[typetag::serde(name = "gid_output")]
 impl State for GidOutputState {
-    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+    fn remap(&mut self, _mapper: &mut dyn StateMapper) {}
 }
 
 impl Process for GidOutput {

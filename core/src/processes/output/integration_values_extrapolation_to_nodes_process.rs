@@ -1,12 +1,12 @@
 //! Quantities of Gauss points as variables of the nodes around them.
 
-use super::gauss::{self, Share};
-use super::place::PartPath;
+use super::gauss::{self, GaussWeight};
+use super::part_path::PartPath;
 use super::quantity::GaussQuantity;
 use crate::assembly::System;
 use crate::diagnostics::Result;
 use crate::io::results::{Column, Values};
-use crate::model::{Model, ModelPart, Role, named};
+use crate::model::{EntityRole, Model, ModelPart, named};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
@@ -14,7 +14,7 @@ use crate::register;
 struct Extrapolation {
     part: PartPath,
     quantities: Vec<GaussQuantity>,
-    share: Share,
+    share: GaussWeight,
     history: bool,
 }
 
@@ -23,7 +23,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     Ok(Box::new(Extrapolation {
         part: PartPath::new(settings)?,
         quantities: GaussQuantity::list(settings, "list_of_variables", request.report)?,
-        share: if settings.get_bool("area_average")? { Share::Volume } else { Share::Point },
+        share: if settings.get_bool("area_average")? { GaussWeight::Volume } else { GaussWeight::Point },
         history: !settings.get_bool("extrapolate_non_historical")?,
     }))
 }
@@ -56,8 +56,9 @@ impl Process for Extrapolation {
     fn end_step(&mut self, model: &mut Model, system: &System) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
         let nodes = selection.nodes.clone();
-        let of =
-            |quantity| gauss::at_nodes(part, system, Role::Element, &selection.elements, &nodes, quantity, self.share);
+        let of = |quantity| {
+            gauss::at_nodes(part, system, EntityRole::Element, &selection.elements, &nodes, quantity, self.share)
+        };
         let columns: Vec<Column> = self.quantities.iter().map(of).collect();
         let part = model.root_mut(&self.part.path)?;
         columns.iter().for_each(|column| self.store(part, &nodes, column));

@@ -6,17 +6,17 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
 use super::control::TimeCounter;
 use super::gauss;
-use super::place::{PartPath, file_of};
+use super::part_path::{PartPath, file_of};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place, Result, unfit};
 use crate::entities::Gauss;
 use crate::io::{FileUse, Mark, replace_file};
-use crate::model::{Flags, Model, ModelPart, Role, SubPart};
+use crate::model::{EntityRole, Flags, Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
@@ -64,7 +64,7 @@ struct JsonOutputState {
     series: Histories,
     /// Whether the ranks are others than those that have sampled.
     #[serde(skip)]
-    regrouped: bool,
+    repartitioned: bool,
 }
 
 stored_as_bytes!(JsonOutputState);
@@ -72,8 +72,8 @@ stored_as_bytes!(JsonOutputState);
 #[typetag::serde(name = "json_output")]
 impl State for JsonOutputState {
     /// Every rank gets the complete list of the first one.
-    fn carry(&mut self, _carrier: &mut dyn Carrier) {
-        self.regrouped = true;
+    fn remap(&mut self, _mapper: &mut dyn StateMapper) {
+        self.repartitioned = true;
     }
 }
 
@@ -141,7 +141,7 @@ impl JsonOutput {
             return;
         }
         let follows =
-            |&&e: &&u32| part.evaluates(Role::Element, e as usize) && passes(&part.elements.flags, self.flag, e);
+            |&&e: &&u32| part.evaluates(EntityRole::Element, e as usize) && passes(&part.elements.flags, self.flag, e);
         self.series.followed = selection.elements.iter().filter(follows).copied().collect();
         let ids = self.series.followed.iter().map(|&element| part.elements.ids[element as usize] as f64).collect();
         for id in part.ranks.to_root(ids).concat() {
@@ -184,7 +184,7 @@ impl JsonOutput {
         }
         for (at, quantity) in self.gauss.iter().enumerate() {
             let mut own = Vec::new();
-            gauss::each(part, system, Role::Element, &self.series.followed, quantity, |row, gauss| {
+            gauss::each(part, system, EntityRole::Element, &self.series.followed, quantity, |row, gauss| {
                 let element = self.series.followed[row];
                 if passes(&part.elements.flags, self.flag, element) {
                     let id = part.elements.ids[element as usize];
@@ -378,19 +378,23 @@ impl Process for JsonOutput {
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
-        Some(Box::new(JsonOutputState { counter: self.counter.counter, series: self.series.clone(), regrouped: false }))
+        Some(Box::new(JsonOutputState {
+            counter: self.counter.counter,
+            series: self.series.clone(),
+            repartitioned: false,
+        }))
     }
 
     fn resume(&mut self, model: &mut Model, state: Box<dyn State>) -> Result<()> {
-        let JsonOutputState { counter, mut series, regrouped } = state.take()?;
-        if regrouped {
+        let JsonOutputState { counter, mut series, repartitioned } = state.take()?;
+        if repartitioned {
             let (part, selection) = self.part.find(model)?;
             let known = |&&node: &&u32| {
                 part.owns_node(node as usize) && series.nodes.contains_key(&part.nodes.ids[node as usize])
             };
             let followed = |&&element: &&u32| {
                 let id = part.elements.ids[element as usize];
-                part.evaluates(Role::Element, element as usize) && series.elements.contains_key(&id)
+                part.evaluates(EntityRole::Element, element as usize) && series.elements.contains_key(&id)
             };
             series.known = selection.nodes.iter().filter(known).copied().collect();
             series.followed = selection.elements.iter().filter(followed).copied().collect();

@@ -4,7 +4,7 @@ use super::gauss::is_known;
 use super::quantity::{GaussQuantity, Quantity};
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place};
-use crate::model::{ModelPart, Role, named};
+use crate::model::{EntityRole, ModelPart, named};
 
 /// The lists of a picture: keys of the deck.
 const HISTORY: &str = "nodal_solution_step_data_variables";
@@ -14,7 +14,7 @@ const GAUSS: &str = "gauss_point_variables_extrapolated_to_nodes";
 /// The list that knows a variable, other than `asked`; `None` where none does.
 fn better(name: &str, asked: &str, part: &ModelPart, system: &System) -> Option<&'static str> {
     let column = named(name)?.column().0;
-    let gauss = GaussQuantity::new(name).is_ok_and(|quantity| is_known(system, Role::Element, &quantity));
+    let gauss = GaussQuantity::new(name).is_ok_and(|quantity| is_known(system, EntityRole::Element, &quantity));
     let lists = [(HISTORY, part.nodes.history.has(column)), (VALUES, part.nodes.values.has(column)), (GAUSS, gauss)];
     if lists.iter().any(|(list, knows)| *list == asked && *knows) {
         return None;

@@ -4,15 +4,15 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
-use super::place::{PartPath, one_of};
+use super::part_path::{PartPath, one_of};
 use super::quantity::Quantity;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Place, Result};
 use crate::geometry::{mapping, shape_functions};
 use crate::io::{FileUse, Mark, append_to_file, cut_file, length_of, replace_file};
-use crate::model::{Model, ModelPart, Role, SubPart};
+use crate::model::{EntityRole, Model, ModelPart, SubPart};
 use crate::parameters::{Interval, Node, Settings};
 use crate::processes::{Process, ProcessRequest};
 
@@ -26,7 +26,7 @@ pub(super) struct PointsOutput {
     tolerance: f64,
     history: bool,
     quantities: Vec<Quantity>,
-    points: Vec<Point>,
+    points: Vec<OutputPoint>,
     /// Where the points were read from, if they were.
     source: Option<PathBuf>,
     /// Whether the files hold their heads.
@@ -34,7 +34,7 @@ pub(super) struct PointsOutput {
     messages: Vec<Diagnostic>,
 }
 
-struct Point {
+struct OutputPoint {
     position: [f64; 3],
     file: PathBuf,
     /// Nodes and their weights, on the rank that writes them.
@@ -72,7 +72,7 @@ pub(super) fn points_output(
         (false, true) => folder.join(name),
         (false, false) => folder.join(format!("{name}.{ending}")),
     };
-    let point = |(at, &position)| Point { position, file: file(at), weights: Vec::new() };
+    let point = |(at, &position)| OutputPoint { position, file: file(at), weights: Vec::new() };
     Ok(Box::new(PointsOutput {
         part: PartPath::new(settings)?,
         interval: Interval::from_node(settings.get("interval")?)?,
@@ -126,14 +126,14 @@ impl PointsOutput {
                 let id = part.nodes.ids[found as usize];
                 (distance(found) <= self.tolerance).then(|| (distance(found), id, vec![(found, 1.0)]))
             }
-            1 => self.in_cells(part, Role::Element, &selection.elements, point),
-            _ => self.in_cells(part, Role::Condition, &selection.conditions, point),
+            1 => self.in_cells(part, EntityRole::Element, &selection.elements, point),
+            _ => self.in_cells(part, EntityRole::Condition, &selection.conditions, point),
         }
     }
 
-    fn in_cells(&self, part: &ModelPart, kind: Role, cells: &[u32], point: [f64; 3]) -> Option<Found> {
+    fn in_cells(&self, part: &ModelPart, kind: EntityRole, cells: &[u32], point: [f64; 3]) -> Option<Found> {
         let positions = if self.is_current { &part.nodes.current } else { &part.nodes.initial };
-        let table = if kind == Role::Element { &part.elements } else { &part.conditions };
+        let table = if kind == EntityRole::Element { &part.elements } else { &part.conditions };
         cells.iter().filter(|&&cell| part.evaluates(kind, cell as usize)).find_map(|&cell| {
             let shape = table.kinds[cell as usize].cell?;
             let nodes = table.nodes(cell);
@@ -154,7 +154,7 @@ impl PointsOutput {
     }
 
     /// The values at a point that this rank has found.
-    fn values(&self, part: &ModelPart, point: &Point) -> Vec<f64> {
+    fn values(&self, part: &ModelPart, point: &OutputPoint) -> Vec<f64> {
         let mut values = Vec::new();
         for quantity in &self.quantities {
             let fields = quantity.fields(part, self.history);
@@ -169,7 +169,7 @@ impl PointsOutput {
         values
     }
 
-    fn head(&self, part: &ModelPart, point: &Point) -> String {
+    fn head(&self, part: &ModelPart, point: &OutputPoint) -> String {
         let [x, y, z] = point.position;
         let mut head =
             format!("# Results for \"{}\" at position: x: {x:?}; y: {y:?}; z: {z:?}\n# time", ENTITIES[self.entity]);
@@ -193,7 +193,7 @@ stored_as_bytes!(SavedLengths);
 
 #[typetag::serde(name = "points_output")]
 impl State for SavedLengths {
-    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+    fn remap(&mut self, _mapper: &mut dyn StateMapper) {}
 }
 
 impl Process for PointsOutput {
@@ -203,7 +203,7 @@ impl Process for PointsOutput {
 
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
-        let find = |point: &Point| {
+        let find = |point: &OutputPoint| {
             self.find(part, selection, point.position).ok_or_else(|| {
                 let [x, y, z] = point.position;
                 let fact =

@@ -2,7 +2,7 @@
 
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::io::results::Column;
-use crate::io::variables::{not_computed, unknown_variable};
+use crate::io::variable_names::{not_computed, unknown_variable};
 use crate::model::flags::flag;
 use crate::model::{Field, Fields, Flags, ModelPart, Named, VariableKind, named, variables};
 use crate::parameters::Settings;

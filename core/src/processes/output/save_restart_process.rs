@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
-use super::place::{PartPath, one_of};
+use super::part_path::{PartPath, one_of};
 use crate::diagnostics::{Result, unfit};
 use crate::io::{FileUse, SAVED};
 use crate::model::{Model, ModelPart};
@@ -17,7 +17,7 @@ use crate::register;
 
 /// Unit of the interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Unit {
+enum RestartUnit {
     Time,
     Step,
     Minutes,
@@ -25,7 +25,7 @@ enum Unit {
 
 struct SaveRestart {
     part: PartPath,
-    unit: Unit,
+    unit: RestartUnit,
     frequency: f64,
     folder: PathBuf,
     /// Files that are kept; `None` for all.
@@ -47,13 +47,13 @@ stored_as_bytes!(Saved);
 
 #[typetag::serde(name = "save_restart")]
 impl State for Saved {
-    fn carry(&mut self, _carrier: &mut dyn Carrier) {}
+    fn remap(&mut self, _mapper: &mut dyn StateMapper) {}
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let adapt = |defaults: Defaults| defaults.require(&["model_part_name"]).renamed("io_foldername", "output_path");
     let settings = &request.settings_with(adapt)?;
-    let unit = [Unit::Time, Unit::Step, Unit::Minutes];
+    let unit = [RestartUnit::Time, RestartUnit::Step, RestartUnit::Minutes];
     let unit = unit[one_of(settings, "restart_control_type", &["time", "step", "minutes"])?];
     let frequency = settings.get_f64("restart_save_frequency")?;
     let most = settings.get_i64("max_files_to_keep")?;
@@ -71,7 +71,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         (true, "") => request.results.join(format!("{}__restart_files", settings.get_str("model_part_name")?)),
         (true, path) => request.results.join(path),
     };
-    let frequency = if unit == Unit::Step { frequency.trunc() } else { frequency };
+    let frequency = if unit == RestartUnit::Step { frequency.trunc() } else { frequency };
     Ok(Box::new(SaveRestart {
         part: PartPath::new(settings)?,
         unit,
@@ -118,9 +118,11 @@ impl Process for SaveRestart {
         let info = &self.part.find(model).ok()?.0.info;
         let (step, time) = (info.step as f64, info.time);
         let (label, due) = match self.unit {
-            Unit::Time => (time, time > self.saved.next),
-            Unit::Step => (step, step >= self.saved.next),
-            Unit::Minutes => (step, model.ranks.any(self.since.elapsed().as_secs_f64() >= 60.0 * self.frequency)),
+            RestartUnit::Time => (time, time > self.saved.next),
+            RestartUnit::Step => (step, step >= self.saved.next),
+            RestartUnit::Minutes => {
+                (step, model.ranks.any(self.since.elapsed().as_secs_f64() >= 60.0 * self.frequency))
+            }
         };
         if !due {
             return None;

@@ -1,16 +1,16 @@
 //! Surfaces of interfaces as pictures.
 
-use super::format::ShownSurface;
+use super::format::SurfaceFrame;
 use super::quantity::{Quantity, flag_column};
 use crate::io::results::{Column, Dataset};
 use crate::model::{InterfaceSurface, ModelPart, Rates, SubPart};
 
 /// Surfaces of the interfaces of a part now, with the facets whose mesh nodes all belong to the selection; those without such facets are
 /// left out.
-pub(super) fn surfaces(part: &ModelPart, selection: &SubPart, deformed: bool) -> Vec<ShownSurface> {
+pub(super) fn surfaces(part: &ModelPart, selection: &SubPart, deformed: bool) -> Vec<SurfaceFrame> {
     let shown = |(number, surface): (usize, &InterfaceSurface)| {
         let data = picture(part, selection, surface, deformed);
-        (!data.cells.is_empty()).then(|| ShownSurface { number, name: surface.name.clone(), data })
+        (!data.cells.is_empty()).then(|| SurfaceFrame { number, name: surface.name.clone(), data })
     };
     part.interface_surfaces.iter().enumerate().filter_map(shown).collect()
 }

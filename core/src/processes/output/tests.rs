@@ -5,10 +5,10 @@ use std::path::Path;
 
 use crate::assembly::System;
 use crate::diagnostics::{Error, Report, Result};
-use crate::entities::{EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, StepView, Tangent, Want};
+use crate::entities::{EntityBlock, EntityError, Gauss, LocalSystems, LocalUnknown, Request, StepView, Tangent};
 use crate::geometry::Shape;
 use crate::model::test_variables::{DISPLACEMENT, SLAVE};
-use crate::model::{EntityKind, Model, ModelPart, Nodes, Role, SubPart};
+use crate::model::{EntityKind, EntityRole, Model, ModelPart, Nodes, SubPart};
 use crate::parameters::Document;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register_variable;
@@ -21,12 +21,12 @@ register_variable! {
 static QUADRILATERAL: EntityKind = EntityKind {
     cell: Some(Shape::Quad4),
     space: 2,
-    ..EntityKind::new(Role::Element, Entry::new("OutputTestElement2D4N", file!(), line!()))
+    ..EntityKind::new(EntityRole::Element, Entry::new("OutputTestElement2D4N", file!(), line!()))
 };
 static LINE: EntityKind = EntityKind {
     cell: Some(Shape::Line2),
     space: 2,
-    ..EntityKind::new(Role::Condition, Entry::new("OutputTestCondition2D2N", file!(), line!()))
+    ..EntityKind::new(EntityRole::Condition, Entry::new("OutputTestCondition2D2N", file!(), line!()))
 };
 
 /// Two entities with two Gauss points each: values (e, e + p), weights 1 and 3, first point at the first two nodes.
@@ -58,7 +58,7 @@ impl EntityBlock for Fake {
         &self,
         _: &StepView<'_>,
         _: Range<usize>,
-        _: Want,
+        _: Request,
         _: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         Ok(())

@@ -9,7 +9,7 @@ use super::quantity::{GaussQuantity, Quantity};
 use crate::assembly::System;
 use crate::communication::Ranks;
 use crate::io::results::Column;
-use crate::model::{ModelPart, Rates, Role, SubPart, UsualResults};
+use crate::model::{EntityRole, ModelPart, Rates, SubPart, UsualResults};
 
 /// Rows of a column that a thread takes at a time, at least.
 const ROWS: usize = 1 << 12;
@@ -30,7 +30,7 @@ pub(super) fn values(part: &ModelPart) -> Vec<Quantity> {
 /// Default variables that elements of any rank know at their Gauss points; collective.
 pub(super) fn gauss(part: &ModelPart, system: &System) -> Vec<GaussQuantity> {
     let all = UsualResults::gauss().into_iter().filter_map(|name| GaussQuantity::new(name).ok());
-    all.filter(|quantity| part.ranks.any(is_known(system, Role::Element, quantity))).collect()
+    all.filter(|quantity| part.ranks.any(is_known(system, EntityRole::Element, quantity))).collect()
 }
 
 /// The largest size at a node of each of them, by name, over all ranks; collective.
@@ -53,9 +53,9 @@ pub fn largest_results(part: &ModelPart) -> BTreeMap<String, f64> {
 
 /// For each of these cells the place of the first sub part that has it, from 1 in the order of names, of those that have
 /// cells at all; 0 where none does. Collective.
-pub(super) fn parts(ranks: &Ranks, selection: &SubPart, role: Role, cells: &[u32]) -> Vec<usize> {
+pub(super) fn parts(ranks: &Ranks, selection: &SubPart, role: EntityRole, cells: &[u32]) -> Vec<usize> {
     let lists = selection.children.values().map(|child| match role {
-        Role::Element => &child.elements,
+        EntityRole::Element => &child.elements,
         _ => &child.conditions,
     });
     let lists: Vec<_> = lists.filter(|list| ranks.any(!list.is_empty())).collect();

@@ -3,12 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
-use zelus_linear_algebra::{Carrier, State, stored_as_bytes};
+use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
-use super::control::{OutputControl, Unit};
-use super::format::{OutputFormat, OutputFormatEntry, Shown, ShownSurface, surface_series};
-use super::picture::Picture;
-use super::place::PartPath;
+use super::control::{IntervalUnit, OutputControl};
+use super::format::{OutputFormat, OutputFormatEntry, OutputFrame, SurfaceFrame, surface_series};
+use super::output_columns::OutputColumns;
+use super::part_path::PartPath;
 use super::surfaces::surfaces;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
@@ -24,9 +24,9 @@ use crate::registry::require;
 struct VtkOutput {
     part: PartPath,
     control: OutputControl,
-    picture: Picture,
+    picture: OutputColumns,
     /// The state at the start until the first step is done: results of an earlier run stay as long.
-    start: Vec<Drawn>,
+    start: Vec<PartFrame>,
     format: Box<dyn OutputFormat>,
     /// The same for the last iterate of a step that has failed.
     format_of_failure: Box<dyn OutputFormat>,
@@ -44,10 +44,10 @@ struct VtkOutput {
 }
 
 /// The picture of a part at a time.
-struct Drawn {
+struct PartFrame {
     path: String,
     data: Dataset,
-    surfaces: Vec<ShownSurface>,
+    surfaces: Vec<SurfaceFrame>,
     time: f64,
     label: String,
 }
@@ -79,7 +79,7 @@ fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Proce
     Ok(Box::new(VtkOutput {
         part: PartPath::new(settings)?,
         control: OutputControl::new(settings, "")?,
-        picture: Picture::new(settings, request.report)?,
+        picture: OutputColumns::new(settings, request.report)?,
         start: Vec::new(),
         format,
         format_of_failure,
@@ -104,13 +104,13 @@ impl VtkOutput {
     }
 
     /// Pictures of the part, and of its sub parts where the deck asks for them. Collective.
-    fn draw(&self, model: &Model, system: &System) -> Result<Vec<Drawn>> {
+    fn draw(&self, model: &Model, system: &System) -> Result<Vec<PartFrame>> {
         let (part, selection) = self.part.find(model)?;
         let label = match self.control.unit {
-            Unit::Step => part.info.step.to_string(),
-            Unit::Time => format!("{:.*}", self.decimals, part.info.time),
+            IntervalUnit::Step => part.info.step.to_string(),
+            IntervalUnit::Time => format!("{:.*}", self.decimals, part.info.time),
         };
-        let drawn = |selection: &SubPart, path: String, surfaces: Vec<ShownSurface>| Drawn {
+        let drawn = |selection: &SubPart, path: String, surfaces: Vec<SurfaceFrame>| PartFrame {
             path,
             data: self.picture.draw(part, system, selection).data,
             surfaces,
@@ -132,16 +132,16 @@ impl VtkOutput {
     }
 
     /// Writes pictures; those of an earlier run go first. Collective.
-    fn write(&mut self, model: &Model, pictures: &[Drawn]) -> Result<()> {
+    fn write(&mut self, model: &Model, pictures: &[PartFrame]) -> Result<()> {
         let (part, _) = self.part.find(model)?;
-        for Drawn { path, data, surfaces, time, label } in pictures {
+        for PartFrame { path, data, surfaces, time, label } in pictures {
             if self.clears {
                 part.ranks.on_root(|| {
                     [self.folder.clone(), self.folder_of_failure()].iter().try_for_each(|own| self.clear(own, path))
                 })?;
             }
             let (series, folder) = (self.series(path), &self.folder);
-            self.format.write(&Shown { part, data, surfaces, time: *time, folder, series: &series, label })?;
+            self.format.write(&OutputFrame { part, data, surfaces, time: *time, folder, series: &series, label })?;
         }
         Ok(())
     }
@@ -182,8 +182,8 @@ stored_as_bytes!(VtkOutputState);
 
 #[typetag::serde(name = "vtk_output")]
 impl State for VtkOutputState {
-    fn carry(&mut self, carrier: &mut dyn Carrier) {
-        self.format.iter_mut().for_each(|state| state.carry(carrier));
+    fn remap(&mut self, mapper: &mut dyn StateMapper) {
+        self.format.iter_mut().for_each(|state| state.remap(mapper));
     }
 }
 

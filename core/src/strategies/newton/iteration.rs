@@ -6,17 +6,17 @@ use super::{ENERGY_OF_MOTION, NewtonRaphson, References};
 use crate::assembly::System;
 use crate::communication::Ranks;
 use crate::diagnostics::{Error, Result};
-use crate::entities::{Interaction, Outer, SetChange};
+use crate::entities::{Interaction, OuterLoop, SetChange};
 use crate::model::ModelPart;
 use crate::strategies::body_balance::Imbalance;
-use crate::strategies::contraction::{contracts, swings};
-use crate::strategies::criterion::Check;
+use crate::strategies::convergence_rate::{converges_linearly, oscillates};
+use crate::strategies::criterion::ConvergenceCheck;
 use crate::strategies::linear_solve::{Failed, Solved};
 use crate::strategies::reactions::write_reactions;
 use crate::strategies::records::{IterationRecord, Monitor};
 use crate::strategies::strategy::{after_prediction, is_of_entities, relaxation, update_interactions};
 
-/// Share of the increment that ends a swing between two states.
+/// Share of the increment that ends an oscillation between two states.
 const HALF: f64 = 0.5;
 /// How often an increment that turns elements inside out is halved.
 const HALVINGS: usize = 4;
@@ -56,7 +56,7 @@ impl Step {
     /// The relative residual that a linear solve may leave, small beside the tolerances; none in the first iteration, which may be the
     /// last.
     fn needed(&self) -> f64 {
-        let missing = |check: &Check| {
+        let missing = |check: &ConvergenceCheck| {
             (check.ratio_tolerance / check.ratio).max(check.absolute_tolerance / check.absolute).min(1.0)
         };
         let of_body = self.imbalance.as_ref().map_or(1.0, |own| own.tolerance / own.ratio);
@@ -66,9 +66,9 @@ impl Step {
 }
 
 /// How an iteration ends.
-enum Turn {
+enum IterationEnd {
     /// Another is needed.
-    On,
+    Continue,
     /// The state is accepted.
     Converged,
     /// No further iteration would help.
@@ -92,12 +92,14 @@ impl NewtonRaphson {
             return Ok((Vec::new(), Some(format!("the step cannot begin: {what}"))));
         }
         let mut iteration = 0;
-        while iteration < step.last || (iteration < step.most && contracts(&step.records, step.most - iteration)) {
+        while iteration < step.last
+            || (iteration < step.most && converges_linearly(&step.records, step.most - iteration))
+        {
             iteration += 1;
             match self.iteration(iteration, &mut step, part, system, monitor)? {
-                Turn::On => {}
-                Turn::Failed(why) => return Ok((step.records, Some(why))),
-                Turn::Converged => {
+                IterationEnd::Continue => {}
+                IterationEnd::Failed(why) => return Ok((step.records, Some(why))),
+                IterationEnd::Converged => {
                     self.keep_reactions(part, system, &step.residual);
                     step.imbalance = self.keep_balance(part, system, &step.residual, &step.references, None)?;
                     let Some(imbalance) = &step.imbalance else { return Ok((step.records, None)) };
@@ -169,7 +171,7 @@ impl NewtonRaphson {
         part: &mut ModelPart,
         system: &mut System,
         monitor: &mut dyn Monitor,
-    ) -> Result<Turn> {
+    ) -> Result<IterationEnd> {
         if !self.settings.linear {
             part.info.nl_iteration = iteration;
         }
@@ -190,7 +192,7 @@ impl NewtonRaphson {
         let is_still = !has_motion(&part.ranks, &step.prescribed);
         let mut increment = self.take(&solved, step, part, system)?;
         if let Some(what) = self.first_infinite(part, system, &step.residual) {
-            return Ok(Turn::Failed(format!("diverged in iteration {iteration}: {what}")));
+            return Ok(IterationEnd::Failed(format!("diverged in iteration {iteration}: {what}")));
         }
         // Ahead of the mesh, prescribed values strain one layer of elements; where that is too much, the first iterate only serves the
         // interactions that keep it.
@@ -198,7 +200,7 @@ impl NewtonRaphson {
             step.moved_first.is_some() && iteration == 1 && self.overshoots(part, system, &step.references.start[0])?;
         let change = self.decide(iteration, restart, step, part, system, Some(&mut increment).filter(|_| is_still))?;
         if let Some(why) = self.follow(part, system, &mut step.residual)? {
-            return Ok(Turn::Failed(why));
+            return Ok(IterationEnd::Failed(why));
         }
         let balanced = self.assembler.equations().balanced(&step.residual);
         if iteration == 1 {
@@ -224,23 +226,23 @@ impl NewtonRaphson {
         monitor.iteration(&record);
         step.records.push(record);
         if let Some(what) = self.first_infinite(part, system, &step.residual) {
-            return Ok(Turn::Failed(format!("diverged in iteration {iteration}: {what}")));
+            return Ok(IterationEnd::Failed(format!("diverged in iteration {iteration}: {what}")));
         }
         if restart {
             step.prescribed = self.begin_again(part, system, &step.begin)?;
             step.residual = self.residual(part, system)?;
-            return Ok(Turn::On);
+            return Ok(IterationEnd::Continue);
         }
         if verdict.converged
             && change.count() == 0
             && !system.interactions.is_empty()
             && let Some(why) = self.lost_body(part, system, &step.begin)
         {
-            return Ok(Turn::Failed(why));
+            return Ok(IterationEnd::Failed(why));
         }
         match (self.settings.linear, verdict.converged && change.count() == 0) {
-            (true, _) => Ok(Turn::Converged),
-            (false, false) => Ok(Turn::On),
+            (true, _) => Ok(IterationEnd::Converged),
+            (false, false) => Ok(IterationEnd::Continue),
             (false, true) => self.judge_converged(iteration, step, part, system, monitor),
         }
     }
@@ -304,7 +306,7 @@ impl NewtonRaphson {
         if iteration == 1 {
             observe(&mut system.interactions, part, 0, &rhs);
         }
-        self.solver.aim(step.needed());
+        self.solver.set_forcing_term(step.needed());
         monitor.phase("solve");
         self.solve(part, system, &rhs)
     }
@@ -320,17 +322,17 @@ impl NewtonRaphson {
         residual: &[f64],
         part: &ModelPart,
         system: &System,
-    ) -> Result<Turn> {
+    ) -> Result<IterationEnd> {
         match failed {
             // Interactions may have let a body go that a shorter step holds.
             Failed::Singular(why, _) if !system.interactions.is_empty() => {
                 self.singular = true;
-                Ok(Turn::Failed(why))
+                Ok(IterationEnd::Failed(why))
             }
             Failed::Inaccurate(why) if !system.interactions.is_empty() => {
                 self.singular = true;
                 let worst = self.largest_residual(part, system, &self.assembler.equations().balanced(residual));
-                Ok(Turn::Failed(why + &worst.unwrap_or_default()))
+                Ok(IterationEnd::Failed(why + &worst.unwrap_or_default()))
             }
             // A load or a material at its limit leaves no stiffness; a shorter step ends before it.
             Failed::Singular(why, _) | Failed::Inaccurate(why)
@@ -339,7 +341,10 @@ impl NewtonRaphson {
                 let first = why.lines().next().unwrap_or_default();
                 let limit = "at a limit load prescribe displacements, or use \"arc_length\"";
                 let worst = self.largest_residual(part, system, &self.assembler.equations().balanced(residual));
-                Ok(Turn::Failed(format!("iteration {iteration}: {first}{}; {limit}", worst.unwrap_or_default())))
+                Ok(IterationEnd::Failed(format!(
+                    "iteration {iteration}: {first}{}; {limit}",
+                    worst.unwrap_or_default()
+                )))
             }
             failed => Err(failed.into()),
         }
@@ -353,7 +358,7 @@ impl NewtonRaphson {
         let searched = self.settings.line_search.or(after_failure).filter(|_| is_still);
         increment.iter_mut().zip(&step.prescribed).for_each(|(sum, d)| *sum += d);
         step.prescribed.fill(0.0);
-        if is_still && searched.is_none() && swings(&step.records) {
+        if is_still && searched.is_none() && oscillates(&step.records) {
             increment.iter_mut().for_each(|d| *d *= HALF);
         }
         match searched {
@@ -441,39 +446,39 @@ impl NewtonRaphson {
         part: &mut ModelPart,
         system: &mut System,
         monitor: &mut dyn Monitor,
-    ) -> Result<Turn> {
+    ) -> Result<IterationEnd> {
         let mut accepted = true;
         let start = Instant::now();
         for at in 0..system.interactions.len() {
             let Some(set) = system.interactions[at].active_set() else { continue };
             set.look_at(part, &system.elements);
             let mut outer = set.after_convergence(part)?;
-            if outer == Outer::Together {
+            if outer == OuterLoop::DecideTogether {
                 let said;
                 (outer, said) = self.decide_together(at, part, system)?;
                 said.iter().for_each(|said| monitor.note(&format!("step {}: {said}", part.info.step)));
             }
             match outer {
-                Outer::Done | Outer::Together => {}
-                Outer::Again => accepted = false,
-                Outer::Widened(why) => {
+                OuterLoop::Done | OuterLoop::DecideTogether => {}
+                OuterLoop::Continue => accepted = false,
+                OuterLoop::PairsAdded(why) => {
                     monitor.note(&format!("step {}: {why}; the iteration continues with them", part.info.step));
                     step.widened = Some(why);
                     accepted = false;
                 }
-                Outer::Coarse(why) => self.coarse = Some(why),
-                Outer::Failed(why) => return Ok(Turn::Failed(why)),
+                OuterLoop::StepTooLarge(why) => self.coarse = Some(why),
+                OuterLoop::Failed(why) => return Ok(IterationEnd::Failed(why)),
             }
         }
         self.phases.since(SEARCH, start);
         if accepted {
-            return Ok(Turn::Converged);
+            return Ok(IterationEnd::Converged);
         }
         self.lay_out(part, system)?;
         let (last, most) = self.allowed();
         (step.last, step.most) = (iteration + last, iteration + most);
         step.residual = self.residual(part, system)?;
-        Ok(Turn::On)
+        Ok(IterationEnd::Continue)
     }
 
     /// The equations and sparsity patterns of the active interactions.

@@ -27,7 +27,7 @@ impl NewtonRaphson {
         }
         self.assembler.redistribute(part, system, &nodes)?;
         if let Some(forces) = self.scheme.kept() {
-            self.assembler.hand_on(forces);
+            self.assembler.redistribute_forces(forces);
         }
         Ok(())
     }
@@ -157,7 +157,7 @@ impl NewtonRaphson {
 /// Nodes of elements with a history, ascending.
 fn yielding(system: &System) -> Vec<u32> {
     let of_block = |block: &dyn EntityBlock| {
-        let own = (0..block.len()).filter(|&at| block.remembers(at));
+        let own = (0..block.len()).filter(|&at| block.has_history(at));
         own.flat_map(|at| block.nodes(at).to_vec()).collect::<Vec<u32>>()
     };
     let mut nodes: Vec<u32> = system.elements.iter().flat_map(|block| of_block(block.as_ref())).collect();

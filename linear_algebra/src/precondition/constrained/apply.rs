@@ -17,17 +17,17 @@ impl Constrained {
             let values: Vec<f64> = (0..a).map(|k| group.condition(k, r)).collect();
             prescribes |= values.iter().any(|v| *v != 0.0);
             for (row, &e) in group.own.iter().enumerate() {
-                z[e as usize] = (0..a).map(|k| group.elimination.held[row * a + k] * values[k]).sum();
+                z[e as usize] = (0..a).map(|k| group.elimination.prescribed_motions[row * a + k] * values[k]).sum();
             }
         }
-        let idle_rows: Vec<f64> = self.idle.iter().map(|&(m, _)| r[m as usize]).collect();
+        let inactive_rows: Vec<f64> = self.inactive.iter().map(|&(m, _)| r[m as usize]).collect();
         let kept: Vec<Vec<f64>> =
             self.groups.iter().map(|group| group.rows().map(|e| r[e as usize]).collect()).collect();
         if prescribes {
             // Only unknowns that groups prescribe differ from zero.
-            let change = |at: usize| system.row_product(self.beside[at] as usize, &z);
-            let changes: Vec<f64> = parallel::map(self.beside.len(), 64, change);
-            self.beside.iter().zip(changes).for_each(|(&e, change)| r[e as usize] -= change);
+            let change = |at: usize| system.row_product(self.neighbour_rows[at] as usize, &z);
+            let changes: Vec<f64> = parallel::map(self.neighbour_rows.len(), 64, change);
+            self.neighbour_rows.iter().zip(changes).for_each(|(&e, change)| r[e as usize] -= change);
         }
         self.ghosts.spread(r, 1);
         let at_equation = |e: u32| if e == NONE { 0.0 } else { r[e as usize] };
@@ -45,7 +45,7 @@ impl Constrained {
                     if k < group.tangential() { times(&group.elimination.left[k * s..(k + 1) * s]) } else { 0.0 };
             }
         }
-        for (e, load) in &self.loads {
+        for (e, load) in &self.master_rows {
             b[self.place[*e as usize] as usize] -= load.iter().map(|&(m, v)| v * multipliers[m as usize]).sum::<f64>();
         }
         solve(&mut b[..self.blocks.own() * self.width]);
@@ -73,7 +73,7 @@ impl Constrained {
         for (group, found) in self.groups.iter().zip(found) {
             group.multipliers.iter().zip(found).for_each(|(&m, value)| z[m as usize] = value);
         }
-        for (&(m, diagonal), value) in self.idle.iter().zip(idle_rows) {
+        for (&(m, diagonal), value) in self.inactive.iter().zip(inactive_rows) {
             z[m as usize] = (value - system.row_product(m as usize, &z)) / diagonal;
         }
         vector::copy(&z, r);

@@ -22,7 +22,7 @@ pub(super) struct GroupElimination {
     /// `N₀` and `N₁` one below the other, m × m.
     pub(super) conditions: Vec<f64>,
     /// `Y⁺`, d × a.
-    pub(super) held: Vec<f64>,
+    pub(super) prescribed_motions: Vec<f64>,
     /// `Z`, d × (d − a).
     pub(super) free: Vec<f64>,
     /// `R`, m × (d + m − a).
@@ -55,7 +55,7 @@ pub(super) fn eliminate([d, m]: [usize; 2], a: &[f64], c: &[f64], e: &[f64]) -> 
     // Y turned, d × a, and the two halves of its orthogonal basis.
     let turned: Vec<f64> = (0..d * prescribed).map(|at| combined(at % prescribed, c, d, at / prescribed)).collect();
     let (q, upper) = orthogonal(d, prescribed, &turned)?;
-    let held = right_inverse(d, prescribed, &q, &upper);
+    let prescribed_motions = right_inverse(d, prescribed, &q, &upper);
     let tangential = d - prescribed;
     let free: Vec<f64> =
         (0..d * tangential).map(|at| q[(at / tangential) * d + prescribed + at % tangential]).collect();
@@ -65,7 +65,14 @@ pub(super) fn eliminate([d, m]: [usize; 2], a: &[f64], c: &[f64], e: &[f64]) -> 
         && let Some(inverse) = inverse(m, |row, j| combined(row, e, m, j))
     {
         let (recovery, left) = by_compliance([d, m], a, &inverse);
-        return Some(GroupElimination { prescribed, conditions, held, free: identity(d), recovery, left });
+        return Some(GroupElimination {
+            prescribed,
+            conditions,
+            prescribed_motions,
+            free: identity(d),
+            recovery,
+            left,
+        });
     }
     let mut stack = a.to_vec();
     for row in prescribed..m {
@@ -81,7 +88,7 @@ pub(super) fn eliminate([d, m]: [usize; 2], a: &[f64], c: &[f64], e: &[f64]) -> 
     }
     let mut left: Vec<f64> = (0..tangential * s).map(|at| q[(at % s) * s + m + at / s]).collect();
     scale(d, tangential, s, &mut left, &free)?;
-    Some(GroupElimination { prescribed, conditions, held, free, recovery, left })
+    Some(GroupElimination { prescribed, conditions, prescribed_motions, free, recovery, left })
 }
 
 /// `R` and `L` where the conditions alone give the multipliers, `λ = (N₁ E)⁻¹ …`: the reduced system has the node's stiffness with that
@@ -257,7 +264,7 @@ mod tests {
         let e = [1.0, 0.0, -0.3, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0];
         let found = eliminate([3, 3], &a, &c, &e).expect("determined");
         assert_eq!(found.prescribed, 1);
-        assert!(is_close(&found.held.iter().map(|v| v.abs()).collect::<Vec<_>>(), &[0.0, 0.0, 1.0]));
+        assert!(is_close(&found.prescribed_motions.iter().map(|v| v.abs()).collect::<Vec<_>>(), &[0.0, 0.0, 1.0]));
         let mixed = product(&found.conditions[3..], &e, [2, 3, 3]);
         let stack = [&a[..], &mixed[..]].concat();
         assert!(is_close(&product(&found.left, &stack, [2, 5, 3]), &[0.0; 6]));
@@ -271,7 +278,7 @@ mod tests {
         let a = [1.0, 0.0, 0.5, 0.2, 0.0, 1.0];
         let found = eliminate([3, 2], &a, &c, &[0.0; 4]).expect("determined");
         let y = product(&found.conditions, &c, [2, 2, 3]);
-        assert!(is_close(&product(&y, &found.held, [2, 3, 2]), &[1.0, 0.0, 0.0, 1.0]));
+        assert!(is_close(&product(&y, &found.prescribed_motions, [2, 3, 2]), &[1.0, 0.0, 0.0, 1.0]));
         assert!(is_close(&product(&y, &found.free, [2, 3, 1]), &[0.0; 2]));
     }
 

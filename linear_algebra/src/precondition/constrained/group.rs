@@ -3,7 +3,7 @@
 use super::elimination::GroupElimination;
 
 /// The multipliers of one node.
-pub(super) struct Group {
+pub(super) struct MultiplierGroup {
     /// Equations of the node's unknowns.
     pub(super) own: Vec<u32>,
     /// Multipliers that act on them.
@@ -23,7 +23,7 @@ pub(super) struct Group {
     pub(super) followed: Vec<(u32, Vec<f64>)>,
 }
 
-impl Group {
+impl MultiplierGroup {
     /// Motions that are not prescribed.
     pub(super) fn tangential(&self) -> usize {
         self.own.len() - self.elimination.prescribed

@@ -15,15 +15,15 @@
 mod apply;
 mod elimination;
 mod group;
-mod left;
+mod reduced_blocks;
 
 use super::blocks::Blocks;
-use super::multigrid::Multigrid;
+use super::multigrid_hierarchy::Multigrid;
 use crate::components::Components;
 use crate::ghosts::{Ghosts, Owned};
 use crate::parallel;
 use crate::system::System;
-use group::Group;
+use group::MultiplierGroup;
 
 const NONE: u32 = u32::MAX;
 /// Blocks that a thread takes at a time, at least.
@@ -39,15 +39,15 @@ pub(crate) struct Constrained {
     place: Vec<u32>,
     /// Equation at each place; places beyond a node's unknowns have none.
     equation: Vec<u32>,
-    groups: Vec<Group>,
+    groups: Vec<MultiplierGroup>,
     /// Group of each own equation and each of its multipliers.
     group_of: Vec<u32>,
     /// Equations of masters with the entries of multipliers in them.
-    loads: Vec<(u32, Vec<(u32, f64)>)>,
+    master_rows: Vec<(u32, Vec<(u32, f64)>)>,
     /// Equations with entries of unknowns that groups prescribe.
-    beside: Vec<u32>,
+    neighbour_rows: Vec<u32>,
     /// Multipliers that follow from their condition alone, with their diagonal.
-    idle: Vec<(u32, f64)>,
+    inactive: Vec<(u32, f64)>,
     /// Factor of each equation that brings it to the size of forces.
     pub(crate) row_scales: Vec<f64>,
     /// Who has which equations, and which blocks.
@@ -95,7 +95,7 @@ impl Constrained {
         let ghosts = system.ghosts();
         // Own nodes come first, then those of ghosts; nothing is known of others.
         let is_own = ghosts.is_own();
-        let is_placed = |i: usize| !layout.multiplier[i] && !layout.is_held(i);
+        let is_placed = |i: usize| !layout.multiplier[i] && !layout.is_inactive(i);
         let mut has_place: Vec<bool> = (0..n).map(|i| is_own[i] && is_placed(i)).collect();
         ghosts.owned().iter().for_each(|&(i, _)| has_place[i as usize] = is_placed(i as usize));
         let mut owns = vec![false; nodes];
@@ -128,9 +128,9 @@ impl Constrained {
             equation,
             groups: Vec::new(),
             group_of: vec![NONE; n],
-            loads: Vec::new(),
-            beside: Vec::new(),
-            idle: Vec::new(),
+            master_rows: Vec::new(),
+            neighbour_rows: Vec::new(),
+            inactive: Vec::new(),
             row_scales: vec![1.0; n],
             ghosts,
             blocks: of_blocks,
@@ -150,12 +150,12 @@ impl Constrained {
         // Those of others whose rows are not here act on none that are.
         let is_own = self.ghosts.is_own();
         let is_known = |i: usize| is_own[i] || system.row(i).next().is_some();
-        let is_here = |i: usize| layout.multiplier[i] && !layout.is_held(i) && is_known(i);
+        let is_here = |i: usize| layout.multiplier[i] && !layout.is_inactive(i) && is_known(i);
         for i in (0..layout.equations()).filter(|&i| is_here(i)) {
             of_node.entry(layout.node[i]).or_default().push(i as u32);
         }
         // Multipliers that conditions alone determine, multipliers that nothing here determines, and the group of the rest.
-        type Found = (Vec<(u32, f64, f64)>, Vec<u32>, Option<Result<Group, usize>>);
+        type Found = (Vec<(u32, f64, f64)>, Vec<u32>, Option<Result<MultiplierGroup, usize>>);
         let find = |(node, multipliers): &(u32, Vec<u32>)| -> Found {
             let own: Vec<u32> = match block[*node as usize] {
                 NONE => Vec::new(),
@@ -169,24 +169,24 @@ impl Constrained {
             let is_known_to = |m: u32, n: u32| m != n && entry(system, n as usize, m as usize) != 0.0;
             let joins = |m: u32| action(m) > 1e-10 * largest || multipliers.iter().any(|&n| is_known_to(m, n));
             let (acting, others): (Vec<u32>, Vec<u32>) = multipliers.iter().partition(|&&m| largest > 0.0 && joins(m));
-            let (mut idle, mut lone) = (Vec::new(), Vec::new());
+            let (mut inactive, mut lone) = (Vec::new(), Vec::new());
             for m in others {
                 let diagonal = entry(system, m as usize, m as usize);
                 let size = system.row(m as usize).fold(0.0_f64, |s, (_, v)| s.max(v.abs()));
                 match diagonal.abs() > DETERMINES * size {
-                    true => idle.push((m, diagonal, 1.0 / diagonal.abs())),
+                    true => inactive.push((m, diagonal, 1.0 / diagonal.abs())),
                     false => lone.push(m),
                 }
             }
             let group = (!acting.is_empty()).then(|| self.group(system, own, acting, largest));
-            (idle, lone, group)
+            (inactive, lone, group)
         };
         let nodes: Vec<(u32, Vec<u32>)> = of_node.into_iter().collect();
         let found: Vec<Found> = parallel::map(nodes.len(), 16, |at| find(&nodes[at]));
         let mut lone = Vec::new();
-        for (idle, more, group) in found {
-            for (m, diagonal, scale) in idle {
-                self.idle.push((m, diagonal));
+        for (inactive, more, group) in found {
+            for (m, diagonal, scale) in inactive {
+                self.inactive.push((m, diagonal));
                 self.row_scales[m as usize] = scale;
             }
             lone.extend(more);
@@ -196,10 +196,10 @@ impl Constrained {
         }
         for m in lone {
             if self.ghosts.processes().is_some() {
-                // Its carrier depends on the carriers of others, which may be on other ranks.
+                // Its unknown depends on the unknowns of others, which may be on other ranks.
                 return Err(m as usize);
             }
-            let (master, action) = self.carrier(system, m).ok_or(m as usize)?;
+            let (master, action) = self.prescribed_unknown(system, m).ok_or(m as usize)?;
             let group = self.group(system, vec![master], vec![m], action)?;
             self.add_group(group);
         }
@@ -208,7 +208,7 @@ impl Constrained {
 
     /// The unknown that a multiplier prescribes whose own node is held: of those in no group the one it moves most, and the
     /// size of its entry there.
-    fn carrier(&self, system: &System<'_>, multiplier: u32) -> Option<(u32, f64)> {
+    fn prescribed_unknown(&self, system: &System<'_>, multiplier: u32) -> Option<(u32, f64)> {
         let m = multiplier as usize;
         let mut best: Option<(u32, f64, f64)> = None;
         for (j, c) in system.row(m).filter(|&(j, _)| !system.layout.multiplier[j] && self.group_of[j] == NONE) {
@@ -220,7 +220,7 @@ impl Constrained {
         best.map(|(j, action, _)| (j, action))
     }
 
-    fn add_group(&mut self, group: Group) {
+    fn add_group(&mut self, group: MultiplierGroup) {
         let at = self.groups.len() as u32;
         group.own.iter().chain(&group.multipliers).for_each(|&e| self.group_of[e as usize] = at);
         for (&m, scale) in group.multipliers.iter().zip(&group.scales) {
@@ -229,7 +229,13 @@ impl Constrained {
         self.groups.push(group);
     }
 
-    fn group(&self, system: &System<'_>, own: Vec<u32>, multipliers: Vec<u32>, action: f64) -> Result<Group, usize> {
+    fn group(
+        &self,
+        system: &System<'_>,
+        own: Vec<u32>,
+        multipliers: Vec<u32>,
+        action: f64,
+    ) -> Result<MultiplierGroup, usize> {
         let (d, m) = (own.len(), multipliers.len());
         let of = |i: u32, j: u32| entry(system, i as usize, j as usize);
         let stiffness = own.iter().fold(0.0_f64, |s, &e| s.max(of(e, e).abs()));
@@ -251,7 +257,7 @@ impl Constrained {
         }
         // Conditions now read per displacement and per multiplier times action / stiffness.
         let elimination = elimination::eliminate([d, m], &a, &c, &e).ok_or(multipliers[0] as usize)?;
-        Ok(Group {
+        Ok(MultiplierGroup {
             own,
             multipliers,
             elimination,
@@ -267,7 +273,7 @@ impl Constrained {
     /// Links between groups and the rest: unknowns of masters in conditions, multipliers in the equations of masters.
     fn find_neighbours(&mut self, system: &System<'_>) {
         let is_own = |e: usize| self.group_of[e] != NONE && !system.layout.multiplier[e];
-        let of_group = |group: &Group| {
+        let of_group = |group: &MultiplierGroup| {
             let m = group.multipliers.len();
             let mut rows = Vec::new();
             for row in 0..group.elimination.prescribed {
@@ -286,16 +292,16 @@ impl Constrained {
         };
         let all: Vec<Vec<Vec<(u32, f64)>>> = parallel::map(self.groups.len(), 16, |at| of_group(&self.groups[at]));
         // Patterns are symmetric: an entry of a column is also one of the row.
-        let near = |of: fn(&Group) -> &[u32]| -> Vec<u32> {
+        let near = |of: fn(&MultiplierGroup) -> &[u32]| -> Vec<u32> {
             let mut is_near = vec![false; system.equations()];
             for &row in self.groups.iter().flat_map(of) {
                 columns(system, row as usize).for_each(|j| is_near[j as usize] = true);
             }
-            let free = (0..system.equations()).filter(|&j| is_near[j] && !system.layout.is_held(j));
+            let free = (0..system.equations()).filter(|&j| is_near[j] && !system.layout.is_inactive(j));
             free.map(|j| j as u32).collect()
         };
-        let beside = near(|group| &group.own);
-        let mut loads = Vec::new();
+        let neighbour_rows = near(|group| &group.own);
+        let mut master_rows = Vec::new();
         for i in near(|group| &group.multipliers) {
             if system.layout.multiplier[i as usize] || is_own(i as usize) {
                 continue;
@@ -306,11 +312,11 @@ impl Constrained {
                 .map(|(j, value)| (j as u32, value))
                 .collect();
             if !acting.is_empty() {
-                loads.push((i, acting));
+                master_rows.push((i, acting));
             }
         }
         self.groups.iter_mut().zip(all).for_each(|(group, rows)| group.masters = rows);
-        (self.loads, self.beside) = (loads, beside);
+        (self.master_rows, self.neighbour_rows) = (master_rows, neighbour_rows);
     }
 
     /// Unknowns that the unknowns of groups follow.
@@ -321,7 +327,7 @@ impl Constrained {
             let of_row = |row: usize| {
                 let own = (0..free).map(|k| (place[group.own[k] as usize], group.elimination.free[row * free + k]));
                 let masters = group.masters.iter().enumerate().flat_map(|(k, masters)| {
-                    let factor = -group.elimination.held[row * a + k];
+                    let factor = -group.elimination.prescribed_motions[row * a + k];
                     masters.iter().map(move |&(e, value)| (place[e as usize], factor * value))
                 });
                 own.chain(masters).collect()

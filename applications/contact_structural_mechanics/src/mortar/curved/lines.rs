@@ -17,10 +17,10 @@ pub(super) struct CurvedLines<'a, T: Real> {
 
 impl<T: Real> CurvedLines<'_, T> {
     /// Points of a chord of the slave before those of the master.
-    pub(super) fn of_piece(&self, piece: usize, covered: &mut f64, visit: &mut dyn FnMut(&OverlapPoint<T>)) {
+    pub(super) fn of_sub_facet(&self, sub_facet: usize, covered: &mut f64, visit: &mut dyn FnMut(&OverlapPoint<T>)) {
         let pair = self.pair;
-        let own = pair.slave_shape.pieces[piece];
-        for other in pair.master_shape.pieces {
+        let own = pair.slave_shape.sub_facets[sub_facet];
+        for other in pair.master_shape.sub_facets {
             let slave = LINE_2.nodal(|n| pair.slave[own[n]]);
             let master = LINE_2.nodal(|n| pair.master[other[n]]);
             let chords = PairGeometry {

@@ -22,7 +22,7 @@ pub(super) fn rim(shape: &FacetShape) -> Nodal<usize> {
 
 /// A vertex, where it is, and the edge that the outline follows from there.
 #[derive(Clone, Copy)]
-struct Corner {
+struct OutlineVertex {
     vertex: Vertex,
     at: [f64; 2],
     edge: Edge,
@@ -37,13 +37,15 @@ enum Edge {
 
 /// A closed line of vertices.
 pub(super) struct ClosedLine {
-    corners: [Corner; CAPACITY],
+    corners: [OutlineVertex; CAPACITY],
     len: usize,
 }
 
 impl ClosedLine {
-    const EMPTY: Self =
-        Self { corners: [Corner { vertex: Vertex::Slave(0), at: [0.0; 2], edge: Edge::Slave(0) }; CAPACITY], len: 0 };
+    const EMPTY: Self = Self {
+        corners: [OutlineVertex { vertex: Vertex::Slave(0), at: [0.0; 2], edge: Edge::Slave(0) }; CAPACITY],
+        len: 0,
+    };
 
     /// The overlap of a convex slave with the outline of a master, anticlockwise; both may run either way round.
     pub(super) fn overlap(slave: &[[f64; 2]], master: &[[f64; 2]], tolerance: f64) -> Self {
@@ -55,7 +57,7 @@ impl ClosedLine {
         for n in 0..count {
             // Backwards, an edge starts where it ends.
             let (node, edge) = if area(master) > 0.0 { (n, n) } else { (count - 1 - n, (2 * count - 2 - n) % count) };
-            line.push(Corner { vertex: Vertex::Master(node), at: master[node], edge: Edge::Master(edge) });
+            line.push(OutlineVertex { vertex: Vertex::Master(node), at: master[node], edge: Edge::Master(edge) });
         }
         for edge in 0..slave.len() {
             line = line.cut(slave, edge, turn, tolerance);
@@ -66,12 +68,12 @@ impl ClosedLine {
     /// The vertices, the first of them the one nearest to a point.
     pub(super) fn vertices_from(&self, point: [f64; 2]) -> impl Iterator<Item = Vertex> + '_ {
         let corners = &self.corners[..self.len];
-        let apart = |corner: &Corner| length(minus(corner.at, point));
+        let apart = |corner: &OutlineVertex| length(minus(corner.at, point));
         let first = (0..self.len).min_by(|&a, &b| apart(&corners[a]).total_cmp(&apart(&corners[b]))).unwrap_or(0);
         corners[first..].iter().chain(&corners[..first]).map(|corner| corner.vertex)
     }
 
-    fn push(&mut self, corner: Corner) {
+    fn push(&mut self, corner: OutlineVertex) {
         if self.len < CAPACITY {
             self.corners[self.len] = corner;
             self.len += 1;
@@ -84,7 +86,7 @@ impl ClosedLine {
         let along = minus(to, from);
         let whole = length(along);
         // Distance inwards, zero on the edge.
-        let inwards = |corner: &Corner| {
+        let inwards = |corner: &OutlineVertex| {
             let height = turn * cross2(along, minus(corner.at, from)) / whole;
             if height.abs() <= tolerance { 0.0 } else { height }
         };
@@ -94,13 +96,13 @@ impl ClosedLine {
             let (a, b) = (inwards(start), inwards(end));
             if a >= 0.0 {
                 let leaves = a == 0.0 && b < 0.0;
-                out.push(Corner { edge: if leaves { Edge::Slave(edge) } else { start.edge }, ..*start });
+                out.push(OutlineVertex { edge: if leaves { Edge::Slave(edge) } else { start.edge }, ..*start });
             }
             if a * b < 0.0 {
                 let share = a / (a - b);
                 let at = std::array::from_fn(|c| start.at[c] + (end.at[c] - start.at[c]) * share);
                 let next = if b < 0.0 { Edge::Slave(edge) } else { start.edge };
-                out.push(Corner { vertex: crossing(slave.len(), edge, start.edge), at, edge: next });
+                out.push(OutlineVertex { vertex: crossing(slave.len(), edge, start.edge), at, edge: next });
             }
         }
         out

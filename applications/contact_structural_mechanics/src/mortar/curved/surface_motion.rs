@@ -94,8 +94,8 @@ impl<'a, T: Real> SurfaceMotion<'a, T> {
     }
 
     /// Visits the points of a sub-facet of the slave.
-    pub(super) fn of_piece(&self, piece: usize, visit: &mut dyn FnMut(&OverlapPoint<T>)) {
-        for cell in self.found.cells(piece) {
+    pub(super) fn of_sub_facet(&self, sub_facet: usize, visit: &mut dyn FnMut(&OverlapPoint<T>)) {
+        for cell in self.found.cells(sub_facet) {
             self.of_cell(cell, visit);
         }
     }

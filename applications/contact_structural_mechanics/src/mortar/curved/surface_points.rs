@@ -112,7 +112,7 @@ pub(super) struct SurfacePoints {
     cells: Vec<Cell>,
     points: Vec<SurfacePoint>,
     /// Cells of each sub-facet of the slave.
-    pieces: Vec<Range<usize>>,
+    sub_facets: Vec<Range<usize>>,
     /// Area of the overlap.
     pub(super) covered: f64,
 }
@@ -131,10 +131,10 @@ impl SurfacePoints {
         let flat = pair.slave.map(|x| plane.coordinates(x));
         let outline = outline(pair, &plane);
         let rule = settings.rule_of_second_order();
-        for piece in pair.slave_shape.pieces {
+        for sub_facet in pair.slave_shape.sub_facets {
             let first = out.cells.len();
             if !is_apart {
-                for part in convex_parts(pair.slave_shape, piece, &flat) {
+                for part in convex_parts(pair.slave_shape, sub_facet, &flat) {
                     let corners = part.corners_in_plane(pair.slave_shape, &flat);
                     let smallest = LEAST_CELL * area(&corners).abs();
                     let overlap =
@@ -154,19 +154,19 @@ impl SurfacePoints {
                     out.parts.push(part);
                 }
             }
-            out.pieces.push(first..out.cells.len());
+            out.sub_facets.push(first..out.cells.len());
         }
         out
     }
 
     /// Points of a sub-facet of the slave.
-    pub(super) fn of_piece(&self, piece: usize) -> impl Iterator<Item = &SurfacePoint> {
-        self.cells(piece).iter().flat_map(|cell| self.points(cell))
+    pub(super) fn of_sub_facet(&self, sub_facet: usize) -> impl Iterator<Item = &SurfacePoint> {
+        self.cells(sub_facet).iter().flat_map(|cell| self.points(cell))
     }
 
     /// Cells of a sub-facet of the slave.
-    pub(super) fn cells(&self, piece: usize) -> &[Cell] {
-        &self.cells[self.pieces[piece].clone()]
+    pub(super) fn cells(&self, sub_facet: usize) -> &[Cell] {
+        &self.cells[self.sub_facets[sub_facet].clone()]
     }
 
     /// Points of a cell.
@@ -251,10 +251,10 @@ impl SlavePart {
 }
 
 /// The convex parts of a sub-facet: itself, or the triangles around its centre.
-fn convex_parts(shape: &FacetShape, piece: &[usize], flat: &[[f64; 2]]) -> impl Iterator<Item = SlavePart> + use<> {
-    let count = piece.len();
-    let own = Nodal::new(count, |n| shape.corner(piece[n]));
-    let at = Nodal::new(count, |n| flat[piece[n]]);
+fn convex_parts(shape: &FacetShape, sub_facet: &[usize], flat: &[[f64; 2]]) -> impl Iterator<Item = SlavePart> + use<> {
+    let count = sub_facet.len();
+    let own = Nodal::new(count, |n| shape.corner(sub_facet[n]));
+    let at = Nodal::new(count, |n| flat[sub_facet[n]]);
     let turn = |n: usize| cross2(minus(at[(n + 1) % count], at[n]), minus(at[(n + 2) % count], at[(n + 1) % count]));
     let is_convex = (0..count).all(|n| turn(n) > 0.0) || (0..count).all(|n| turn(n) < 0.0);
     let centre = combine(&own.map(|_| 1.0 / count as f64), &own);

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::variables::{DISPLACEMENT, TEMPERATURE};
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{Gather, StepView};
+use zelus_core::entities::{EntityView, StepView};
 use zelus_core::geometry::ShapeTable;
 
 use super::Solid;
@@ -40,7 +40,7 @@ pub(super) struct Deformation<const S: usize> {
 }
 
 /// The motion of an element's nodes as a formulation reads it.
-pub(super) struct Motion<const NODES: usize> {
+pub(super) struct ElementMotion<const NODES: usize> {
     /// Displacements that strain the element (length).
     u: [[f64; 3]; NODES],
     /// Where DISPLACEMENT is ahead of the mesh: present displacements less those of the step, and those at its start.
@@ -54,7 +54,7 @@ pub(super) struct Motion<const NODES: usize> {
     band: (f64, bool),
 }
 
-impl<const NODES: usize> Motion<NODES> {
+impl<const NODES: usize> ElementMotion<NODES> {
     /// The temperature where the shape functions are `n`, for laws that ask for it.
     fn temperature<const S: usize>(&self, material: &Material<S>, n: &[f64; NODES]) -> Result<f64, String> {
         if !material.law.expands() {
@@ -74,7 +74,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
     pub(in crate::elements) const AXISYMMETRIC: bool = S == 4 && !F::MEAN_DILATATION;
 
     /// Motion of the nodes, as the formulation reads it.
-    pub(super) fn motion(&self, entity: &Gather<'_, NODES>, view: &StepView<'_>) -> Motion<NODES> {
+    pub(super) fn motion(&self, entity: &EntityView<'_, NODES>, view: &StepView<'_>) -> ElementMotion<NODES> {
         let (material, as_kratos) = (self.material(entity), view.info.has(BANDS_AS_KRATOS));
         let width = if material.law.softens() { band::width(material.rule, &entity.initial, as_kratos) } else { 0.0 };
         let band = (width, as_kratos);
@@ -82,7 +82,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         let column = view.nodes.history.values(&TEMPERATURE, 0);
         let temperatures = (!column.is_empty()).then(|| entity.scalars(column));
         if !F::FINITE {
-            return Motion { u: displacement, ahead: None, temperatures, band };
+            return ElementMotion { u: displacement, ahead: None, temperatures, band };
         }
         let (x, initial) = (&entity.current, &entity.initial);
         let nodes = |of: &dyn Fn(usize, usize) -> f64| {
@@ -100,18 +100,18 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             };
             [nodes(&|i, c| x[i][c] - initial[i][c] - (displacement[i][c] - old[i][c])), old]
         });
-        Motion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead, temperatures, band }
+        ElementMotion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead, temperatures, band }
     }
 
     /// Volume on the initial configuration that Gauss point `g` stands for, without thickness.
-    pub(super) fn initial_weight(table: &ShapeTable, g: usize, entity: &Gather<'_, NODES>) -> f64 {
+    pub(super) fn initial_weight(table: &ShapeTable, g: usize, entity: &EntityView<'_, NODES>) -> f64 {
         let det = determinant(&entity.initial, &table.dn::<NODES, DIM>()[g]);
         let turn = if Self::AXISYMMETRIC { 2.0 * PI * radius(&table.n()[g], &entity.initial) } else { 1.0 };
         table.weight(g) * det * turn
     }
 
     /// Mean over the element of the gradients of the shape functions; zero without mean dilatation.
-    pub(super) fn mean_gradients(material: &Material<S>, entity: &Gather<'_, NODES>) -> [[f64; DIM]; NODES] {
+    pub(super) fn mean_gradients(material: &Material<S>, entity: &EntityView<'_, NODES>) -> [[f64; DIM]; NODES] {
         let mut sum = [[0.0; DIM]; NODES];
         if F::MEAN_DILATATION {
             let mut volume = 0.0;
@@ -177,8 +177,8 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
     pub(super) fn point<'a>(
         material: &Material<S>,
         g: usize,
-        entity: &Gather<'_, NODES>,
-        motion: &Motion<NODES>,
+        entity: &EntityView<'_, NODES>,
+        motion: &ElementMotion<NODES>,
         mean: &[[f64; DIM]; NODES],
         state: &'a [f64],
     ) -> Result<Point<'a, NODES, DIM, S>, String> {

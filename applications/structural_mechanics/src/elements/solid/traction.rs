@@ -3,7 +3,7 @@
 
 use nalgebra::Vector3;
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{FacePoint, Gather};
+use zelus_core::entities::{EntityView, FacePoint};
 use zelus_core::geometry::{local_gradients, shape_functions};
 
 use super::Solid;
@@ -41,7 +41,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
     pub(super) fn face_traction<const SIZE: usize>(
         &self,
         material: &Material<S>,
-        entity: &Gather<'_, NODES>,
+        entity: &EntityView<'_, NODES>,
         point: &FacePoint,
         u: &[[f64; 3]; NODES],
         by: Option<&mut [[f64; 3]; SIZE]>,
