@@ -60,7 +60,7 @@ enum Command {
     /// Run a deck.
     Run(run_arguments::RunArguments),
     /// Check everything about a deck that can be known without solving.
-    ConvergenceCheck {
+    Check {
         /// The deck, e.g. ProjectParameters.json.
         file: PathBuf,
         /// Use the defaults of this program where the deck gives none, e.g. kratos.
@@ -145,7 +145,7 @@ enum Format {
 fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> {
     match command {
         Command::Run(arguments) => run::run(&arguments, ranks, ran),
-        Command::ConvergenceCheck { file, like, set, format } => {
+        Command::Check { file, like, set, format } => {
             let options = RunOptions { like, ranks: ranks.clone(), changes: changes(&set)?, ..RunOptions::default() };
             if format == Format::Json && ranks.is_root() {
                 let mut problems = Problems::default();

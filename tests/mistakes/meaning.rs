@@ -115,6 +115,28 @@ fn tables_that_begin_late_or_lack_values_are_told() {
 }
 
 #[test]
+fn a_loaded_face_of_no_element_is_told() {
+    let across = check(
+        PRESSED,
+        |_| (),
+        |folder| {
+            let path = folder.join("mesh.mdpa");
+            let mesh = std::fs::read_to_string(&path).expect("the mesh");
+            let begin = mesh.find("Begin Conditions LineLoadCondition2D2N").expect("loaded lines");
+            let first = mesh[begin..].lines().nth(1).expect("a condition").to_owned();
+            let words: Vec<&str> = first.split_whitespace().collect();
+            // Node 13 is at the other end of the body.
+            let changed = [words[0], words[1], words[2], "13"].join(" ");
+            std::fs::write(&path, mesh.replacen(&first, &changed, 1)).expect("the mesh");
+        },
+    );
+    assert!(
+        across.contains("warning[loose-load]") && across.contains("1 condition with a load is on no face"),
+        "{across}"
+    );
+}
+
+#[test]
 fn a_planar_model_with_heights_is_told() {
     let lifted = check(
         PRESSED,

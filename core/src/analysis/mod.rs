@@ -14,6 +14,7 @@ mod cutting;
 mod deck;
 mod driver;
 mod large_motion;
+mod loose_loads;
 mod program_defaults;
 mod mesh;
 mod no_load;

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use zelus_core::assembly::System;
 use zelus_core::diagnostics::{Diagnostic, Place, Report, Result};
-use zelus_core::model::{MasterSlaveConstraint, Model, ScalarVariable, SubPart};
+use zelus_core::model::{MasterSlaveConstraint, Model, ModelPart, ScalarVariable, SubPart};
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, check_unknowns, scalars_of};
 use zelus_core::register;
@@ -77,6 +77,10 @@ fn components(settings: &Settings, key: &str, domain_size: usize) -> Result<Vec<
 }
 
 impl Process for ImposeRigidMovement {
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
+        self.constant != 0.0
+    }
+
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root_mut(&self.root)?;
         let pairs = self.slaves.iter().flat_map(|&node| self.variables.iter().map(move |&pair| (node, pair)));

@@ -2,6 +2,7 @@
 
 use super::super::body_loads::{warn_of_body_loads, warn_of_no_inertia};
 use super::super::coincident_nodes::warn_of_coincident_nodes;
+use super::super::loose_loads::warn_of_loose_loads;
 use super::super::model_checks::{
     prescriptions, warn_of_collapsed, warn_of_contradictions, warn_of_height, warn_of_loads_given_twice, warn_of_twins,
 };
@@ -43,6 +44,7 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
     warn_of_collapsed(part, &mut problems);
     warn_of_twins(part, &mut problems);
     warn_of_coincident_nodes(part, surfaces, &mut problems);
+    warn_of_loose_loads(part, &mut problems);
     warn_of_loads_given_twice(part, processes, &mut problems);
     warn_of_body_loads(part, system, processes, &mut problems);
     warn_of_contradictions(part, processes, [middle, schedule.end_time], &mut problems);

@@ -1,0 +1,51 @@
+//! Conditions that carry loads and lie on no face of a body.
+
+use rustc_hash::FxHashMap;
+
+use crate::diagnostics::{Diagnostic, Report};
+use crate::model::ModelPart;
+
+/// Warns of faces with loads whose nodes belong to bodies, but to no element in common: their loads act within or across bodies.
+///
+/// On several ranks the element of a face may be elsewhere: there nothing is said.
+pub(super) fn warn_of_loose_loads(part: &ModelPart, problems: &mut Report) {
+    let (conditions, elements, space) = (&part.conditions, &part.elements, part.info.domain_size);
+    let is_face = |at: &u32| {
+        let kind = conditions.kinds[*at as usize];
+        kind.loads.is_some_and(|loads| !loads.is_empty()) && kind.cell.is_some_and(|cell| cell.dim() + 1 == space)
+    };
+    let faces: Vec<u32> = (0..conditions.len() as u32).filter(is_face).collect();
+    if faces.is_empty() || part.share.is_some() {
+        return;
+    }
+    let nodes = faces.iter().flat_map(|&face| conditions.nodes(face)).copied();
+    let mut elements_of: FxHashMap<u32, Vec<u32>> = nodes.map(|node| (node, Vec::new())).collect();
+    for at in 0..elements.len() as u32 {
+        if elements.kinds[at as usize].cell.is_some_and(|cell| cell.dim() == space) {
+            let own = elements.nodes(at).iter();
+            own.for_each(|node| elements_of.get_mut(node).into_iter().for_each(|of_node| of_node.push(at)));
+        }
+    }
+    let is_loose = |face: &&u32| {
+        let own = conditions.nodes(**face);
+        own.iter().all(|node| !elements_of[node].is_empty())
+            && !elements_of[&own[0]].iter().any(|&at| own.iter().all(|node| elements.nodes(at).contains(node)))
+    };
+    let loose: Vec<&u32> = faces.iter().filter(is_loose).collect();
+    let Some(&&first) = loose.first() else { return };
+    let word = if loose.len() == 1 {
+        "1 condition with a load is"
+    } else {
+        &format!("{} conditions with loads are", loose.len())
+    };
+    let ids: Vec<String> =
+        conditions.nodes(first).iter().map(|&node| part.nodes.ids[node as usize].to_string()).collect();
+    let fact = format!(
+        "{word} on no face of an element, the first is {} {} with nodes {}",
+        conditions.kinds[first as usize].name,
+        conditions.ids[first as usize],
+        ids.join(" ")
+    );
+    let remedy = "the load acts within or across bodies: check the nodes of the condition";
+    problems.push(Diagnostic::warning("loose-load", fact).remedy(remedy));
+}
