@@ -74,7 +74,7 @@ def main():
     draw(found)
     for k in SCALES:
         row = [found[k, eps] for eps in PENALTIES]
-        if any(after < 0.98 * before for before, after in zip(row, row[1:])):
+        if any(after < (1 - 1e-6) * before for before, after in zip(row, row[1:])):
             sys.exit(f"k = {k:g}: κ does not grow with ε: {row}")
     # κ ≥ k σ/μ, which it comes to as k grows (README.md).
     bound = 0.98 * found[SCALES[-1], PENALTIES[0]] / SCALES[-1]

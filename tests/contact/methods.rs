@@ -244,6 +244,27 @@ fn condition_numbers_are_those_of_table_4_2() {
     }
 }
 
+/// κ of the first system, K small displacements in the initial state: EXTERNAL, dense eigenvalues of [K + ε B, k Nᵀ; k N, 0] by numpy,
+/// given to four digits.
+#[test]
+fn condition_numbers_are_those_of_the_symmetric_matrix() {
+    for (scale_factor, penalty, exact) in
+        [(100.0, 1e3, 2.488e4), (1e3, 1e3, 6.785e4), (1e3, 1e4, 2.125e5), (1e4, 1e4, 6.582e5)]
+    {
+        let scratch = scratch_copy(&root().join("examples/condition_number"));
+        let mut deck = read_json(&scratch.path().join(DECK)).expect("the deck");
+        deck.as_object_mut().expect("an object").remove("output_processes");
+        let parameters = &mut deck["processes"]["contact_process_list"][0]["Parameters"]["advance_ALM_parameters"];
+        (parameters["scale_factor"], parameters["penalty"]) = (json!(scale_factor), json!(penalty));
+        write_json(&scratch.path().join(DECK), &deck);
+        let said = run(scratch.path());
+        let (_, first) = said.split_once("condition number").expect("a condition number");
+        let first: f64 =
+            first.split_whitespace().next().and_then(|word| word.trim_end_matches(',').parse().ok()).expect("a number");
+        assert!((first / exact - 1.0).abs() < 5e-4, "k = {scale_factor}, ε = {penalty}: {first:e} for {exact:e}");
+    }
+}
+
 #[test]
 fn contact_that_is_asked_for_must_be_there() {
     let scratch = case("contact_2d/uzawa");

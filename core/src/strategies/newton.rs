@@ -482,8 +482,8 @@ impl NewtonRaphson {
         self.messages.push(Diagnostic::warning("redundant-constraints", fact).remedy(remedy));
     }
 
-    /// Largest over smallest size of an eigenvalue of the system (eq. 4.18), by power and inverse power iteration; on several
-    /// ranks, rank 0 knows it. Collective.
+    /// Largest over smallest size of an eigenvalue of the system (eq. 4.18), by Lanczos' method; on several ranks, rank 0 knows
+    /// it. Collective.
     fn condition_number(&mut self, part: &ModelPart, system: &System, monitor: &mut dyn Monitor) -> Option<f64> {
         self.assembler.reduce();
         let mut matrices = self.assembler.system();
@@ -495,7 +495,12 @@ impl NewtonRaphson {
             return None;
         }
         match zelus_linear_algebra::condition_number(&matrices) {
-            Ok(spectrum) => Some(spectrum.condition_number()),
+            Ok(spectrum) => {
+                if !spectrum.converged {
+                    monitor.note("condition number: an estimate, Lanczos' method has not converged");
+                }
+                Some(spectrum.condition_number())
+            }
             Err(error) => {
                 monitor.note(&format!("condition number: {error}"));
                 None
