@@ -350,5 +350,5 @@ fn factors_below_zero_are_refused() {
     );
     let output = zelus(scratch.path(), &["run", "ProjectParameters.json"]);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    assert!(said(&output).contains("must not be negative"), "{}", said(&output));
+    assert!(said(&output).contains("is -1.0, it must be at least 0"), "{}", said(&output));
 }

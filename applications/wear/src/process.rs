@@ -130,11 +130,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         let problem = settings.error("wear_of_slave", "missing-key", "neither side has a law of wear");
         return Err(problem.remedy("write e.g. [{\"law\": \"archard\", \"wear_coefficient\": 1.0e-8}]").into());
     }
-    let share = settings.get_positive("largest_share")?;
-    if share >= 1.0 {
-        let fact = format!("\"largest_share\" is {share}");
-        return Err(settings.error("largest_share", "invalid-value", fact).remedy("write a number below 1").into());
-    }
+    let share = settings.get_f64("largest_share")?;
     let speed = Some(settings.get("sliding_speed")?).filter(|speed| speed.is_given());
     let interval = Interval::from_node(settings.get("interval")?)?;
     let root = settings.get_str("model_part_name")?.to_owned();

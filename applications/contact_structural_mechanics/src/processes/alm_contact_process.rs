@@ -211,7 +211,8 @@ fn interaction(
         warn_of_penalties(&whole.parameters, request);
     }
     let tangent_factor = keys.as_ref().map_or(1.0, |keys| keys.tangent_factor);
-    let factor = nitsche_factor(settings, whole.nitsche_factor)?;
+    // 0 stands for the default of the variant.
+    let factor = whole.nitsche_factor.filter(|factor| *factor > 0.0);
     let rule = whole.parameters.adaptation_rule.unwrap_or_else(PenaltyRule::usual);
     let chosen = ContactSettings {
         parts: whole.contact_model_part,
@@ -286,18 +287,6 @@ fn warn_of_penalties(parameters: &PenaltyKeys, request: &mut ProcessRequest<'_>)
         let fact = format!("\"{key}\" changes nothing: with \"augmentation\": \"node\" no penalty acts on contact");
         let warning = Diagnostic::warning("key-without-effect", fact).at(given.key_place(key));
         request.report.push(warning.remedy("take it out, or set \"augmentation\" to \"pair\""));
-    }
-}
-
-/// γ₀ of Nitsche's method; `None` for that of the variant.
-fn nitsche_factor(settings: &Settings, given: Option<f64>) -> Result<Option<f64>> {
-    match given {
-        Some(factor) if factor < 0.0 => {
-            let fact = format!("\"nitsche_factor\" is {factor}, it must not be negative");
-            let problem = settings.error("nitsche_factor", "invalid-value", fact);
-            Err(problem.remedy("write a number above 0, or 0 for the default of the variant").into())
-        }
-        given => Ok(given.filter(|factor| *factor > 0.0)),
     }
 }
 

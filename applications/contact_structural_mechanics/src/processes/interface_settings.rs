@@ -41,9 +41,8 @@ pub(super) fn check_positive(settings: &Settings, keys: &[&str]) -> Result<()> {
 /// Checks `search_parameters`.
 ///
 /// # Errors
-/// A search that does not exist, a search radius that is not positive.
+/// A search that does not exist.
 pub(super) fn check_search(settings: &Settings) -> Result<()> {
-    check_positive(settings, &["search_parameters.search_factor"])?;
     let type_search = settings.get_str("search_parameters.type_search")?;
     if SEARCHES.contains(&type_search) {
         return Ok(());
