@@ -1,6 +1,6 @@
 //! Laws of friction: how large the tangential traction of a node in contact may become.
 //!
-//! - Coulomb: |t| ≤ −μ p, with the normal pressure p < 0 in compression, and no friction in tension;
+//! - Coulomb: |t| ≤ −μ p, with the normal pressure p < 0 in compression;
 //! - Tresca: |t| ≤ τ, whatever the pressure.
 
 use serde::{Deserialize, Serialize};
@@ -15,7 +15,7 @@ use crate::variables::{FRICTION_COEFFICIENT, TRESCA_FRICTION_THRESHOLD};
 /// Coefficients below this count as none.
 const NOTHING: f64 = f64::EPSILON;
 
-/// Limit c + μ max(−p, 0) of a node's tangential traction (force per area).
+/// Limit c − μ p of a node's tangential traction (force per area).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Bound {
     /// μ ≥ 0: the part that grows with the pressure.
@@ -25,13 +25,9 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// The limit under a normal pressure, which is negative in compression. Tension bears no friction: a negative limit would turn the
-    /// direction of sliding round in every iteration.
+    /// The limit under a normal pressure, which is negative in compression.
     #[inline]
     pub fn at<T: Real>(self, pressure: T) -> T {
-        if pressure.value() > 0.0 {
-            return T::constant(self.threshold);
-        }
         pressure * -self.coefficient + self.threshold
     }
 
@@ -117,7 +113,6 @@ mod tests {
     fn bounds() {
         assert_eq!((COULOMB.bound)(0.3).at(-10.0), 3.0);
         assert_eq!((TRESCA.bound)(0.3).at(-10.0), 0.3);
-        assert_eq!([(COULOMB.bound)(0.3).at(10.0), (TRESCA.bound)(0.3).at(10.0)], [0.0, 0.3]);
         assert!((COULOMB.bound)(0.0).is_smooth() && (TRESCA.bound)(0.0).is_smooth());
         assert!(!(TRESCA.bound)(1e-3).is_smooth());
     }
