@@ -69,12 +69,7 @@ pub(crate) fn find_tangents(
                         let slip = slip(part, states, slave, formulation.multiplier, parameters);
                         let trial = TrialTraction::new(state, slip, parameters, multiplier);
                         rotation = trial.rotation(state.kinematics.pairs, pure, parameters);
-                        match (pure, trial.bound < 0.0) {
-                            (true, _) => by_slip(),
-                            // Of a node in tension, in a set that is frozen, the limit below zero would turn it round every time.
-                            (false, true) => [0.0; 3],
-                            (false, false) => decided(trial.traction),
-                        }
+                        if pure { by_slip() } else { decided(trial.traction) }
                     }
                     NodeState::Inactive if !pure => [0.0; 3],
                     // The multiplier of an iterate lags behind the normal, which may have turned by more than friction does.
