@@ -47,10 +47,12 @@ pub(super) fn warn_of_twins(part: &ModelPart, problems: &mut Report) {
 
 /// Warns of a planar model whose nodes do not lie in one plane z: elements leave their heights out, distances do not. Collective.
 pub(super) fn warn_of_height(part: &ModelPart, problems: &mut Report) {
+    if part.info.domain_size != 2 {
+        return;
+    }
     let [low, high] = mesh_box(part);
     let size = norm([high[0] - low[0], high[1] - low[1], 0.0]);
-    let height = high[2] - low[2];
-    if part.info.domain_size == 2 && height > FLAT * size {
+    if high[2] - low[2] > FLAT * size {
         let fact = format!("a planar model, but z of its nodes is from {} to {}", low[2], high[2]);
         let remedy = "give all nodes the same z, or set \"domain_size\" to 3";
         problems.push(Diagnostic::warning("out-of-plane", fact).remedy(remedy));
