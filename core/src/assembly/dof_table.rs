@@ -69,7 +69,7 @@ struct VariableNumbers {
 ///
 /// ```
 /// use zelus_core::assembly::DofTable;
-/// use zelus_core::model::{Carriers, ModelPart, Nodes, Owner, ScalarVariable};
+/// use zelus_core::model::{DofOwners, ModelPart, Nodes, Owner, ScalarVariable};
 ///
 /// let mut part = ModelPart::new("Structure");
 /// part.nodes = Nodes::new(vec![1, 2], vec![[0.0; 3], [1.0, 0.0, 0.0]]);
@@ -77,7 +77,7 @@ struct VariableNumbers {
 /// part.slave_nodes.set("wall", &[0]);
 /// let [motion, pressure] = ["MOTION", "PRESSURE"].map(|column| ScalarVariable { column, component: None });
 /// let mut dofs = DofTable::default();
-/// dofs.number(&part, &[Carriers::of_nodes(motion, vec![0, 1])], &[Carriers::of_slaves(pressure, 0..2)]);
+/// dofs.number(&part, &[DofOwners::of_nodes(motion, vec![0, 1])], &[DofOwners::of_slaves(pressure, 0..2)]);
 /// assert_eq!(dofs.number_of(pressure, Owner::Slave(1)), Some(2));
 /// assert_eq!(dofs.number_of(motion, Owner::Node(1)), Some(3));
 /// ```
