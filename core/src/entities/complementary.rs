@@ -1,6 +1,6 @@
 //! Conditions of an interaction that are decided together, by one linear complementarity problem.
 
-use super::interaction::OuterLoop;
+use super::interaction::{OuterLoop, SetChange};
 use crate::diagnostics::Result;
 use crate::model::{ModelPart, Owner, ScalarVariable};
 
@@ -39,6 +39,12 @@ pub trait Complementary {
 
     /// Lets those conditions act that did before [`Complementary::activate_all`].
     fn restore_decisions(&mut self);
+
+    /// Whether only joint decisions change the conditions of this step, not the rules of each.
+    fn hold(&mut self, held: bool);
+
+    /// Decides on all conditions by their responses, in a state that need not be converged.
+    fn decide_states(&mut self, part: &mut ModelPart, responses: &Responses) -> SetChange;
 
     /// Decides on all conditions by their responses, without them one by one; gives a line for the log too, where they are decided
     /// together.

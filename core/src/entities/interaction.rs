@@ -279,6 +279,12 @@ pub trait ActiveSet {
     fn restrain_free_bodies(&mut self, _part: &mut ModelPart) -> bool {
         false
     }
+
+    /// Length by which a body without restraint moves in an iteration of contact stabilisation, a share of the mesh size of the
+    /// interface; `None` where the interaction restrains no body. Collective.
+    fn stabilization_length(&self, _part: &ModelPart) -> Option<f64> {
+        None
+    }
 }
 
 /// A first iterate that decides on the answer of its step.

@@ -5,6 +5,7 @@ mod followers;
 mod iteration;
 mod lost_body;
 mod references;
+mod stabilization;
 mod start;
 
 use std::cell::LazyCell;
@@ -80,6 +81,10 @@ pub struct NewtonRaphson {
     failed: bool,
     /// Whether it searches along increments, since the step has failed without that.
     searches: bool,
+    /// Length of contact stabilisation in the last step, where it may be stabilised.
+    stabilization_length: Option<f64>,
+    /// Whether steps are stabilised from their first iteration on, since one has failed without that.
+    stabilizes: bool,
     pub(super) root_gather: RootGather,
     phases: Phases,
     /// Whether the last step ended at a singular system.
@@ -164,6 +169,10 @@ impl SolutionStrategy for NewtonRaphson {
     }
 
     fn other_way(&mut self, failed: &StepRecord) -> Option<&'static str> {
+        if !self.stabilizes && self.stabilization_length.is_some() && (failed.singular || failed.has_diverged()) {
+            self.stabilizes = true;
+            return Some("with contact stabilization");
+        }
         let NewtonSettings { linear, line_search, line_search_after_failure, .. } = &self.settings;
         let may = line_search_after_failure.is_some() && line_search.is_none() && !linear;
         self.searches = may && !self.searches && failed.failed_to_converge();
@@ -195,7 +204,7 @@ impl SolutionStrategy for NewtonRaphson {
         if self.scheme.has_inertia() && !system.interactions.is_empty() {
             self.measure_energy(part, system)?;
         }
-        self.searches = false;
+        (self.searches, self.stabilizes) = (false, false);
         self.energy_balance.accept();
         let start = Instant::now();
         let accepted = accept(part, system);
@@ -241,6 +250,8 @@ impl NewtonRaphson {
             criterion,
             solver,
             assembler,
+            stabilization_length: None,
+            stabilizes: false,
             root_gather: RootGather::default(),
             failed: false,
             searches: false,

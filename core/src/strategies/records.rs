@@ -99,6 +99,12 @@ impl StepRecord {
         !self.converged && !self.singular && !self.iterations.last().is_some_and(has_settled)
     }
 
+    /// Whether its residual ended larger than it began, so that the iteration has left the neighbourhood of a solution.
+    pub fn has_diverged(&self) -> bool {
+        let grown = |check: &ConvergenceCheck| check.ratio.is_nan() || check.ratio > 1.0;
+        self.failed_to_converge() && self.iterations.last().is_some_and(|last| last.checks.iter().any(grown))
+    }
+
     /// Whether an attempt failed just as this one did: the same measures and changes of state in every iteration.
     ///
     /// Where nothing but the size of the load tells two steps apart, as without a gap, friction or curvature, a shorter one

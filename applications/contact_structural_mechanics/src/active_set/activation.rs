@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use zelus_core::model::{Nodes, SlaveNodes};
+use zelus_core::model::{ModelPart, Nodes, SlaveNodes};
 
 use crate::interface::SlaveIndex;
 use crate::law::SlipRule;
@@ -12,6 +12,8 @@ use crate::variables::NODAL_H;
 
 /// Gap, in mesh sizes, of the simple activation.
 const SIMPLE_REACH: f64 = 2e-3;
+/// Motion of a body without restraint in an iteration of contact stabilisation, in mesh sizes.
+const STABILIZATION: f64 = 0.25;
 /// Gap of a node that nothing faces.
 const FAR: f64 = 1e12;
 
@@ -95,4 +97,16 @@ pub(crate) fn nearest(
         );
     }
     found
+}
+
+/// Length of contact stabilisation: a quarter of the mean of NODAL_H over the slave nodes of all interfaces, zero without slave nodes;
+/// collective.
+pub(crate) fn stabilization_length(part: &ModelPart, states: &SlaveStates, slaves: &[Vec<SlaveIndex>]) -> f64 {
+    let sizes = part.nodes.values.values(&NODAL_H, 0);
+    let mut sums = [0.0; 2];
+    let own =
+        slaves.iter().flatten().map(|&slave| states.mesh_node(slave) as usize).filter(|&node| part.owns_node(node));
+    own.for_each(|node| sums = [sums[0] + sizes[node], sums[1] + 1.0]);
+    part.ranks.sum(&mut sums);
+    if sums[1] > 0.0 { STABILIZATION * sums[0] / sums[1] } else { 0.0 }
 }

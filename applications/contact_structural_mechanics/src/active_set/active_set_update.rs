@@ -127,21 +127,43 @@ impl ActiveSetUpdate {
         responses: Option<&Responses>,
     ) -> Option<String> {
         self.joint.ended = true;
-        let rules = Rules::of(setup);
-        let (mut decisions, before) = rules.decide(part, states, &mut self.released);
-        let slaves = Self::decided_together(states);
-        if !joint_decision::decide(rules, part, states, &slaves, responses?, &mut decisions) {
-            return None;
-        }
-        let change = rules.apply(part, states, &decisions, &before).count();
+        let count = Self::decided_together(states).len();
+        let change = self.decide_states(part, states, setup, responses?).count();
         if change == 0 {
             return None;
         }
         self.joint = JointDecisions { made: self.joint.made + 1, ended: false };
-        let count = slaves.len();
         Some(format!(
             "the states of {count} slave nodes are decided together, as one complementarity problem; {change} change"
         ))
+    }
+
+    /// Decides on slave nodes together by their `responses`; no change where these have no solution.
+    pub(crate) fn decide_states(
+        &mut self,
+        part: &mut ModelPart,
+        states: &mut SlaveStates,
+        setup: &Setup,
+        responses: &Responses,
+    ) -> SetChange {
+        let rules = Rules::of(setup);
+        let (mut decisions, before) = rules.decide(part, states, &mut self.released);
+        let slaves = Self::decided_together(states);
+        if joint_decision::decide(rules, part, states, &slaves, responses, &mut decisions) {
+            rules.apply(part, states, &decisions, &before)
+        } else {
+            SetChange::default()
+        }
+    }
+
+    /// Whether slave nodes of a formulation can be decided on together.
+    pub(crate) fn decides_jointly(setup: &Setup) -> bool {
+        Rules::of(setup).decides_jointly()
+    }
+
+    /// Whether states change by joint decisions and in converged states only.
+    pub(crate) fn hold(&mut self, held: bool) {
+        self.cycles.hold(held);
     }
 
     /// Finds the directions of sliding, where nodes have them.

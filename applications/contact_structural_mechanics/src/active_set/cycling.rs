@@ -64,6 +64,11 @@ impl CycleGuard {
         *self = Self { warned: self.warned, ..Self::default() };
     }
 
+    /// Lets states change in converged states only, or in every iteration.
+    pub(crate) fn hold(&mut self, held: bool) {
+        self.frozen = held;
+    }
+
     /// Whether states change in converged states only.
     pub(crate) fn holds(&self) -> bool {
         self.frozen

@@ -15,7 +15,7 @@ use zelus_structural_mechanics::variables::{NORMAL, VELOCITY};
 
 use super::contact_state::{ContactState, RememberedContact};
 use super::outer_loops::OuterLoops;
-use crate::active_set::{ActivationCriterion, ActiveSetUpdate, forced_points};
+use crate::active_set::{ActivationCriterion, ActiveSetUpdate, activation, forced_points};
 use crate::adaptation::{Growth, StablePenalty};
 use crate::flags::CONTACT;
 use crate::friction;
@@ -419,7 +419,7 @@ impl ActiveSet for ContactInteraction {
     }
 
     fn complementary(&mut self) -> Option<&mut dyn Complementary> {
-        Some(self)
+        if self.acting && ActiveSetUpdate::decides_jointly(&self.contact.setup) { Some(self) } else { None }
     }
 
     fn restrain_free_bodies(&mut self, part: &mut ModelPart) -> bool {
@@ -440,6 +440,12 @@ impl ActiveSet for ContactInteraction {
         self.contact.publish(part);
         any
     }
+
+    fn stabilization_length(&self, part: &ModelPart) -> Option<f64> {
+        let slaves = self.contact.pairing.slaves_by_interface();
+        (self.acting && self.contact.setup.settings.explicit.is_none())
+            .then(|| activation::stabilization_length(part, &self.contact.states, &slaves))
+    }
 }
 
 impl Complementary for ContactInteraction {
@@ -457,6 +463,16 @@ impl Complementary for ContactInteraction {
 
     fn restore_decisions(&mut self) {
         self.contact.pairing.set_states(&self.contact.states);
+    }
+
+    fn hold(&mut self, held: bool) {
+        self.set.hold(held);
+    }
+
+    fn decide_states(&mut self, part: &mut ModelPart, responses: &Responses) -> SetChange {
+        let change = self.set.decide_states(part, &mut self.contact.states, &self.contact.setup, responses);
+        self.contact.publish(part);
+        change
     }
 
     fn decide_together(

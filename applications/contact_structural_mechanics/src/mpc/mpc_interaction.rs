@@ -539,6 +539,11 @@ impl ActiveSet for MpcInteraction {
         self.states.export(&mut part.nodes);
         !near.is_empty()
     }
+
+    fn stabilization_length(&self, part: &ModelPart) -> Option<f64> {
+        (self.acting && !self.settings.ties())
+            .then(|| activation::stabilization_length(part, &self.states, &self.slaves_by_interface()))
+    }
 }
 
 impl Retry for MpcInteraction {

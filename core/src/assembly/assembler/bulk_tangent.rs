@@ -234,6 +234,20 @@ impl BulkTangent {
         self.has_tangent = true;
     }
 
+    /// Adds `amount(n, |k|)` to the diagonal entry k of each unknown n, until the tangent is computed anew.
+    pub fn add_to_diagonal(&mut self, amount: &dyn Fn(usize, f64) -> f64) {
+        let mut values = self.present.take().or_else(|| self.constant.clone()).unwrap_or_default();
+        if values.is_empty() {
+            values = zeros(self.entries());
+        }
+        for n in 0..self.pattern.matrix.rows {
+            if let Some(at) = self.pattern.matrix.find(n, n) {
+                values[at] += amount(n, values[at].abs());
+            }
+        }
+        (self.present, self.key) = (Some(values), None);
+    }
+
     /// Values of the present tangent, none where no block has one; `None` before they are computed.
     pub fn values(&self) -> Option<&[f64]> {
         self.present.as_deref().or(self.constant.as_deref())

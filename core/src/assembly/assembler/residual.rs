@@ -24,6 +24,16 @@ impl Assembler {
         Ok(rhs)
     }
 
+    /// The residual of elements and conditions alone, without inertia and interactions: summed over a body, its loads. Collective.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub fn bulk_residual(&mut self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
+        let mut out = part.ranks.agree(self.own_bulk_residual(part, system))?;
+        self.parallel.sum(&mut out);
+        Ok(out)
+    }
+
     /// As [`Assembler::residual`], where blocks of interactions may be others than those of the matrix, which stays. Collective.
     ///
     /// # Errors
@@ -45,8 +55,19 @@ impl Assembler {
 
     /// The share of this rank's entities in the residual.
     fn own_residual(&mut self, part: &ModelPart, system: &System, inertia: Option<&Inertia>) -> Result<Vec<f64>> {
-        self.ensure_constant(part, system)?;
         let start = Instant::now();
+        let mut rhs = self.own_bulk_residual(part, system)?;
+        if let Some(inertia) = inertia {
+            let forces = self.own_inertia_forces(part, system, inertia)?;
+            rhs.iter_mut().zip(forces).for_each(|(r, force)| *r -= force);
+        }
+        self.coupling.add_residual(system, &part.view(), &mut rhs)?;
+        self.seconds.residual += start.elapsed().as_secs_f64();
+        Ok(rhs)
+    }
+
+    fn own_bulk_residual(&mut self, part: &ModelPart, system: &System) -> Result<Vec<f64>> {
+        self.ensure_constant(part, system)?;
         let view = part.view();
         let mut rhs = vec![0.0; system.dofs.len()];
         let values = self.values(part, system);
@@ -62,12 +83,6 @@ impl Assembler {
                 _ => add_residual(block, numbers, &view, Request::Residual, &mut rhs)?,
             }
         }
-        if let Some(inertia) = inertia {
-            let forces = self.own_inertia_forces(part, system, inertia)?;
-            rhs.iter_mut().zip(forces).for_each(|(r, force)| *r -= force);
-        }
-        self.coupling.add_residual(system, &view, &mut rhs)?;
-        self.seconds.residual += start.elapsed().as_secs_f64();
         Ok(rhs)
     }
 

@@ -65,6 +65,12 @@ impl Assembler {
         self.stamps.coupling_values += 1;
     }
 
+    /// Adds `amount(n, |k|)` to the diagonal entry k of each unknown n in the bulk's tangent, until the tangents are computed anew.
+    pub fn add_to_diagonal(&mut self, amount: &dyn Fn(usize, f64) -> f64) {
+        self.bulk.add_to_diagonal(amount);
+        self.stamps.bulk_values += 1;
+    }
+
     /// Tangents of follower loads on the equations; `None` when there are none.
     pub fn load_tangents(&mut self) -> Option<&Csr> {
         self.loads.reduce(self.equations.map())

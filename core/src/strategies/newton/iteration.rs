@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::stabilization::Stabilization;
 use super::{ENERGY_OF_MOTION, NewtonRaphson, References};
 use crate::assembly::System;
 use crate::communication::Ranks;
@@ -25,6 +26,9 @@ const HALVINGS: usize = 4;
 const SEARCH: &str = "interactions: search";
 const STATES: &str = "interactions: states";
 
+/// Iterations of a step with contact stabilisation, as a multiple of those of a step.
+const STABILIZED: usize = 4;
+
 /// Share of the tolerances that a linear solve may leave.
 const LEFT: f64 = 0.01;
 
@@ -43,6 +47,8 @@ struct Step {
     /// Regularisation of multipliers where constraints are redundant: the permitted amount, and the amount since a system was singular.
     relaxation: Option<f64>,
     relaxed: Option<f64>,
+    /// Contact stabilisation, once a body has turned out to be free.
+    stabilization: Option<Stabilization>,
     /// Why the last search in a converged state found more.
     widened: Option<String>,
     /// The body that was out of balance in the last state that met the criterion.
@@ -110,7 +116,11 @@ impl NewtonRaphson {
                 }
             }
         }
-        let failure = self.explain(part, system, &step.records, &step.residual);
+        let mut failure = self.explain(part, system, &step.records, &step.residual);
+        if let Some(Stabilization { cause: Some(cause), .. }) = &step.stabilization {
+            self.singular = true;
+            failure = format!("{cause}\n    with contact stabilization {failure}");
+        }
         let imbalance = step.imbalance.as_ref().map(Imbalance::fact);
         let failure = step.widened.iter().chain(&imbalance).fold(failure, |failure, why| format!("{failure}; {why}"));
         self.keep_reactions(part, system, &step.residual);
@@ -126,6 +136,7 @@ impl NewtonRaphson {
         }
         self.phases.since(SEARCH, start);
         self.lay_out(part, system)?;
+        self.stabilization_length = self.find_stabilization_length(part, system);
         if self.scheme.has_inertia() {
             self.redistribute_mass(part, system)?;
             if !part.info.values.contains_key(ENERGY_OF_MOTION) {
@@ -157,6 +168,7 @@ impl NewtonRaphson {
             records: Vec::new(),
             relaxation: relaxation(&system.interactions),
             relaxed: None,
+            stabilization: if self.stabilizes { self.stabilization(None) } else { None },
             widened: None,
             imbalance: None,
             last: self.allowed().0,
@@ -198,7 +210,15 @@ impl NewtonRaphson {
         // interactions that keep it.
         let restart =
             step.moved_first.is_some() && iteration == 1 && self.overshoots(part, system, &step.references.start[0])?;
-        let change = self.decide(iteration, restart, step, part, system, Some(&mut increment).filter(|_| is_still))?;
+        let mut change =
+            self.decide(iteration, restart, step, part, system, Some(&mut increment).filter(|_| is_still))?;
+        if let Some(stabilization) = &step.stabilization {
+            let joint = self.decide_stabilized(stabilization, part, system)?;
+            if joint.count() > 0 {
+                step.residual = self.residual(part, system)?;
+                change.extend(joint);
+            }
+        }
         if let Some(why) = self.follow(part, system, &mut step.residual)? {
             return Ok(IterationEnd::Failed(why));
         }
@@ -263,11 +283,29 @@ impl NewtonRaphson {
                 self.lay_out(part, system)?;
                 step.prescribed = self.followed(part, system, &step.prescribed);
             }
-            step.residual = self.residual(part, system)?;
-            if iteration == 1 {
-                step.references.start.clear();
+            solved = self.solve_again(iteration, step, part, system, monitor);
+        }
+        if step.stabilization.is_none()
+            && let Some(cause) = self.unrestrained(&solved, part, system)
+        {
+            // Later iterates have followed a tangent that let a body go: such a step begins anew.
+            step.stabilization = self.stabilization(Some(cause.clone())).filter(|_| iteration == 1);
+            if step.stabilization.is_some() {
+                let stabilized = self.solve_again(iteration, step, part, system, monitor);
+                if stabilized.is_ok() {
+                    self.stabilizes = true;
+                    let step = part.info.step;
+                    monitor.note(&format!(
+                        "step {step}: contact stabilization, since contact does not restrain a body yet"
+                    ));
+                    return stabilized;
+                }
+                // Not for want of restraint: the system as it is.
+                step.stabilization = None;
+                solved = self.solve_again(iteration, step, part, system, monitor);
+            } else if solved.is_ok() && self.stabilization_length.is_some() {
+                return Err(Failed::Singular(cause, Vec::new()));
             }
-            solved = self.solve_once(iteration, step, part, system, monitor);
         }
         let (Err(Failed::Singular(why, _) | Failed::Inaccurate(why)), None, Some(amount)) =
             (&solved, step.relaxed, step.relaxation)
@@ -280,6 +318,22 @@ impl NewtonRaphson {
         let relaxed = self.solve(part, system, &rhs)?;
         self.warn_of_redundancy(why);
         Ok(relaxed)
+    }
+
+    /// Solves anew in the present state, which the interactions have changed, or with another tangent.
+    fn solve_again(
+        &mut self,
+        iteration: usize,
+        step: &mut Step,
+        part: &mut ModelPart,
+        system: &mut System,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Solved, Failed> {
+        step.residual = self.residual(part, system)?;
+        if iteration == 1 {
+            step.references.start.clear();
+        }
+        self.solve_once(iteration, step, part, system, monitor)
     }
 
     fn solve_once(
@@ -301,6 +355,9 @@ impl NewtonRaphson {
         }
         if iteration == 1 {
             self.refer_to_start(part, system, &step.residual, &mut step.references)?;
+        }
+        if let Some(stabilization) = &mut step.stabilization {
+            self.stabilize(stabilization, part, system, &step.residual)?;
         }
         let rhs = self.assembler.equations().reduce(&step.residual);
         if iteration == 1 {
@@ -455,7 +512,7 @@ impl NewtonRaphson {
             let mut outer = set.after_convergence(part)?;
             if outer == OuterLoop::DecideTogether {
                 let said;
-                (outer, said) = self.decide_together(at, part, system)?;
+                (outer, said) = self.decide_together(at, step.stabilization.as_ref(), part, system)?;
                 said.iter().for_each(|said| monitor.note(&format!("step {}: {said}", part.info.step)));
             }
             match outer {
@@ -477,6 +534,10 @@ impl NewtonRaphson {
         self.lay_out(part, system)?;
         let (last, most) = self.allowed();
         (step.last, step.most) = (iteration + last, iteration + most);
+        if step.stabilization.is_some() {
+            step.last = step.last.min(STABILIZED * last);
+            step.most = step.last;
+        }
         step.residual = self.residual(part, system)?;
         Ok(IterationEnd::Continue)
     }

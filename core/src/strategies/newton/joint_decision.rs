@@ -9,9 +9,10 @@
 //! interface, with the acting conditions exchanged in it.
 
 use super::NewtonRaphson;
+use super::stabilization::Stabilization;
 use crate::assembly::System;
 use crate::diagnostics::Result;
-use crate::entities::{Complementary, ComplementaryCondition, OuterLoop, Responses};
+use crate::entities::{Complementary, ComplementaryCondition, OuterLoop, Responses, SetChange};
 use crate::model::ModelPart;
 use crate::strategies::linear_solve::Failed;
 
@@ -32,6 +33,7 @@ impl NewtonRaphson {
     pub(super) fn decide_together(
         &mut self,
         at: usize,
+        stabilization: Option<&Stabilization>,
         part: &mut ModelPart,
         system: &mut System,
     ) -> Result<(OuterLoop, Option<String>)> {
@@ -42,12 +44,43 @@ impl NewtonRaphson {
         let numbers = numbers(system, &conditions);
         let responses = match numbers {
             Some(numbers) if self.keeps_factors(part) && numbers.len() <= MOST => {
-                self.responses(at, (&numbers, &acts), part, system)?
+                self.responses(at, (&numbers, &acts), stabilization, part, system)?
             }
             _ => None,
         };
         let conditions = complementary(system, at).expect("it has just told its conditions");
         conditions.decide_together(part, responses.as_ref())
+    }
+
+    /// In a step with contact stabilisation: decides on the conditions of each interaction together, where their responses can be
+    /// computed, by the stabilised tangent.
+    ///
+    /// # Errors
+    /// An entity that cannot be computed.
+    pub(super) fn decide_stabilized(
+        &mut self,
+        stabilization: &Stabilization,
+        part: &mut ModelPart,
+        system: &mut System,
+    ) -> Result<SetChange> {
+        let mut change = SetChange::default();
+        for at in 0..system.interactions.len() {
+            let Some(conditions) = complementary(system, at).map(|conditions| conditions.conditions(part)) else {
+                continue;
+            };
+            let acts: Vec<bool> = conditions.iter().map(|condition| condition.acts).collect();
+            let numbers = numbers(system, &conditions).filter(|own| self.keeps_factors(part) && own.len() <= MOST);
+            let responses = match numbers {
+                Some(numbers) => self.responses(at, (&numbers, &acts), Some(stabilization), part, system)?,
+                None => None,
+            };
+            let conditions = complementary(system, at).expect("it has just told its conditions");
+            conditions.hold(responses.is_some());
+            if let Some(responses) = responses {
+                change.extend(conditions.decide_states(part, &responses));
+            }
+        }
+        Ok(change)
     }
 
     /// Whether solves with the last tangent only substitute into its factors, on this rank.
@@ -61,6 +94,7 @@ impl NewtonRaphson {
         &mut self,
         at: usize,
         (numbers, acts): (&[SparseVector], &[bool]),
+        stabilization: Option<&Stabilization>,
         part: &mut ModelPart,
         system: &mut System,
     ) -> Result<Option<Responses>> {
@@ -91,6 +125,9 @@ impl NewtonRaphson {
             of_rows: vec![0.0; n * n],
         };
         self.assembler.tangents(part, system, inertia.as_ref())?;
+        if let Some(stabilization) = stabilization {
+            self.add(stabilization);
+        }
         self.solver.set_forcing_term(0.0);
         for (j, (own, given)) in numbers.iter().zip(&given).enumerate() {
             given.iter().for_each(|&(number, value)| force[number as usize] = value);

@@ -1,0 +1,135 @@
+//! Contact stabilisation: Newton's iteration of bodies that only contact restrains, before it does.
+//!
+//! Where the tangent K of a static step is singular and no further contact can be activated, the iteration goes on with K + A (a
+//! Levenberg–Marquardt method), A being diagonal over the displacements u of each body b:
+//!
+//! A_n = min(Σ_b |r|, F_b) / (N_b d) + ε |K_nn|,
+//!
+//! with the residual r, the load F_b of the body (its resultant, or the sum of |f| over the forces f of its conditions where that is
+//! more), the number N_b of these unknowns, a length d and ε = 1e-8. A body that nothing restrains so moves
+//! by about d an iteration in the direction of its load until contact meets it. Only the tangent is changed: the converged state obeys
+//! the equations of the step, and A does no work. As A vanishes with r, the iteration converges superlinearly once contact holds.
+//! Where the responses of the interface can be computed, its states are decided on together in each iteration
+//! ([`super::joint_decision`]): K + A is regular, so that the complementarity problem has one solution.
+
+use super::NewtonRaphson;
+use crate::assembly::{System, runaway_bound};
+use crate::diagnostics::Result;
+use crate::model::{ModelPart, NumberedBodies};
+use crate::strategies::dof_name::DofName;
+use crate::strategies::linear_solve::{Failed, Solved};
+use crate::vector3::norm;
+
+/// Share of the diagonal entries that is added to them in any case: motions without load, as the spin of a round body without
+/// friction, stay where they are.
+const LEAST: f64 = 1e-8;
+
+/// Share of [`runaway_bound`] that no increment of a restrained body exceeds.
+const RUNAWAY: f64 = 0.01;
+
+/// Contact stabilisation of a step.
+pub(super) struct Stabilization {
+    /// Length that a body moves by in an iteration.
+    length: f64,
+    /// Why the tangent was singular, if it was.
+    pub cause: Option<String>,
+    /// Load of each body; none before the first solve.
+    loads: Vec<f64>,
+    /// Amount for the diagonal entry of each unknown; `None` where it is no displacement of a body.
+    amounts: Vec<Option<f64>>,
+}
+
+impl NewtonRaphson {
+    /// Why a solve shows that a body is not restrained; collective.
+    pub(super) fn unrestrained(
+        &self,
+        solved: &std::result::Result<Solved, Failed>,
+        part: &ModelPart,
+        system: &System,
+    ) -> Option<String> {
+        match solved {
+            Err(Failed::Singular(why, free)) => part.ranks.any(!free.is_empty()).then(|| why.clone()),
+            Err(_) => None,
+            Ok(_) if system.interactions.is_empty() => None,
+            Ok(solved) => {
+                let bound = RUNAWAY * runaway_bound(part, &system.dofs, self.assembler.equations());
+                let increment = self.assembler.equations().expand(&solved.increment);
+                let gone = (0..increment.len()).find(|&n| system.dofs.moves_mesh(n) && increment[n].abs() > bound);
+                let said = gone.map(|n| {
+                    let unknown = DofName::of(&system.dofs, &part.nodes, n as u32);
+                    format!(
+                        "the system of equations is nearly singular: {unknown} would change by {:.1e}",
+                        increment[n]
+                    )
+                });
+                part.ranks.first_to_say(said)
+            }
+        }
+    }
+
+    /// The least length of contact stabilisation that an interaction states; `None` where inertia restrains bodies, or contact does
+    /// not. Collective.
+    pub(super) fn find_stabilization_length(&self, part: &ModelPart, system: &mut System) -> Option<f64> {
+        if !self.scheme.is_static() || self.settings.linear {
+            return None;
+        }
+        let sets = system.interactions.iter_mut().filter_map(|interaction| interaction.active_set());
+        sets.filter_map(|set| set.stabilization_length(part)).reduce(f64::min).filter(|length| *length > 0.0)
+    }
+
+    /// Contact stabilisation of the step, where it may be stabilised; `cause` is why the tangent was singular, if it was.
+    pub(super) fn stabilization(&self, cause: Option<String>) -> Option<Stabilization> {
+        self.stabilization_length.map(|length| Stabilization { length, cause, loads: Vec::new(), amounts: Vec::new() })
+    }
+
+    /// Adds A to the tangent; `residual` over all unknowns. Collective.
+    ///
+    /// # Errors
+    /// A load that cannot be computed.
+    pub(super) fn stabilize(
+        &mut self,
+        own: &mut Stabilization,
+        part: &ModelPart,
+        system: &System,
+        residual: &[f64],
+    ) -> Result<()> {
+        let bodies = self.bodies.get_or_insert_with(|| NumberedBodies::of(part));
+        let dofs = system.dofs.dofs();
+        let body_of = |n: usize| {
+            let own = system.dofs.moves_mesh(n) && self.assembler.counts(n);
+            bodies.of_node[dofs[n].node as usize].filter(|_| own)
+        };
+        let body_of: Vec<Option<usize>> = (0..dofs.len()).map(body_of).collect();
+        let of_bodies = || body_of.iter().enumerate().filter_map(|(n, body)| Some((n, (*body)?)));
+        if own.loads.is_empty() {
+            let (loads, bulk) = (self.assembler.loads(part, system)?, self.assembler.bulk_residual(part, system)?);
+            let mut sums = vec![[0.0; 4]; bodies.first.len()];
+            for (n, body) in of_bodies() {
+                sums[body][dofs[n].variable.offset()] += bulk[n];
+                sums[body][3] += loads[n].abs();
+            }
+            part.ranks.sum(sums.as_flattened_mut());
+            own.loads = sums.into_iter().map(|[x, y, z, sizes]| norm([x, y, z]).max(sizes)).collect();
+        }
+        let equations = self.assembler.equations();
+        let balanced = equations.balanced(residual);
+        let mut sums = vec![[0.0; 2]; bodies.first.len()];
+        for (n, body) in of_bodies().filter(|(n, _)| equations.is_free(*n)) {
+            sums[body] = [sums[body][0] + balanced[n].abs(), sums[body][1] + 1.0];
+        }
+        part.ranks.sum(sums.as_flattened_mut());
+        let amount = |body: usize| {
+            let [residual, count] = sums[body];
+            own.loads[body].min(residual) / (count.max(1.0) * own.length)
+        };
+        own.amounts =
+            body_of.iter().enumerate().map(|(n, body)| body.filter(|_| equations.is_free(n)).map(amount)).collect();
+        self.add(own);
+        Ok(())
+    }
+
+    /// Adds the amounts found last to the tangent.
+    pub(super) fn add(&mut self, own: &Stabilization) {
+        self.assembler.add_to_diagonal(&|n, entry| own.amounts[n].map_or(0.0, |amount| amount + LEAST * entry));
+    }
+}
