@@ -1,6 +1,12 @@
 //! A body that nothing holds is no result: in sweeps over blocks that contact alone may hold, every step that is accepted
 //! balances its load, and a run that ends with 0 has accepted the last one.
 
+use std::path::Path;
+
+use serde_json::{Value, json};
+use zelus::{RunOptions, Silent, Simulation};
+
+use crate::blocks::{Deck, Joint, Mesh};
 use crate::stacks;
 use crate::stacks::Stack;
 use crate::support::{Results, read_json, said, zelus};
@@ -149,4 +155,105 @@ fn steps_that_only_scale_are_cut_once() {
     // Penalty and scale factor stand in the report and are printed once.
     let factor = report["parameters"]["scale factor k"].as_f64().expect("the scale factor");
     assert!(factor > stacks::YOUNG && said(&output).matches("scale factor k").count() == 1);
+}
+
+/// Size of the wedge that tilts: its width, the slope of its lower side, the load per length of its top.
+const WIDTH: f64 = 1.0;
+const SLOPE: f64 = 0.04;
+const PRESSURE: f64 = 1.0;
+/// Young's modulus, so that the block hardly deforms: strains are 1e-5.
+const STIFF: f64 = 1e5;
+/// Iterations of the step at most.
+const MOST: usize = 30;
+
+/// A block whose lower side rises by [`SLOPE`] to the right, above a table.
+#[derive(Debug, Clone, Copy)]
+struct Wedge {
+    formulation: [&'static str; 3],
+    /// Cells along the sides of block and table.
+    cells: [usize; 2],
+    quadratic: bool,
+    triangles: bool,
+    gap: f64,
+}
+
+impl Wedge {
+    /// Writes its deck; gives the nodes of its lower side.
+    fn write(&self, folder: &Path) -> Vec<usize> {
+        let mut mesh = Mesh::new(2);
+        mesh.cut_cells(self.triangles);
+        let table =
+            mesh.block("Lower", [self.cells[1], 3, 1], |[x, y, _]| [1.5 * WIDTH * (x - 0.5), 0.4 * (y - 1.0), 0.0]);
+        let lower_side = |x: f64| self.gap + SLOPE * WIDTH * x;
+        let block = mesh.block("Upper", [self.cells[0], 4, 1], |[x, y, _]| {
+            [WIDTH * (x - 0.5), lower_side(x) * (1.0 - y) + (0.5 + self.gap) * y, 0.0]
+        });
+        let (own, other) = (&block[&(1, 0)], &table[&(1, 1)]);
+        mesh.part("Slave", own.0.clone(), own.1.clone());
+        mesh.part("Interface", [own.0.clone(), other.0.clone()].concat(), [own.1.clone(), other.1.clone()].concat());
+        mesh.part("Top", block[&(1, 1)].0.clone(), block[&(1, 1)].1.clone());
+        mesh.part("Guide", [block[&(1, 1)].0[self.cells[0] / 2]], Vec::new());
+        mesh.part("Base", table[&(1, 0)].0.clone(), Vec::new());
+        if self.quadratic {
+            mesh.raise("Upper", false);
+            mesh.raise("Lower", false);
+        }
+        let still = [json!(0.0), json!(0.0), Value::Null];
+        let guided = [json!(0.0), Value::Null, Value::Null];
+        let supports = vec![("Base".to_owned(), still), ("Guide".to_owned(), guided)];
+        let nodes = own.0.clone();
+        let deck = Deck { mesh, joint: Joint::Frictionless, supports, pressure: PRESSURE, young: STIFF, steps: 1 };
+        deck.write(folder, |deck| {
+            let [condition, process, kind] = self.formulation;
+            deck["solver_settings"]["contact_settings"] = json!({"mortar_type": condition});
+            deck["solver_settings"]["residual_relative_tolerance"] = json!(1e-6);
+            let contact = &mut deck["processes"]["contact_process_list"][0];
+            contact["python_module"] = json!(process);
+            contact["Parameters"]["contact_type"] = json!(kind);
+            deck["processes"]["json_output_process_list"] = json!([]);
+        });
+        nodes
+    }
+
+    /// Runs it and compares with the closed form; the iterations of the accepted step.
+    fn must_lie_flat(&self) -> usize {
+        let folder = tempfile::tempdir().expect("a scratch folder");
+        let nodes = self.write(folder.path());
+        let mut run = Simulation::open(&folder.path().join("ProjectParameters.json"), &RunOptions::default())
+            .unwrap_or_else(|error| panic!("{self:?}: {error}"));
+        run.run(&mut Silent).unwrap_or_else(|error| panic!("{self:?}: {error}"));
+        let displacement = run.field("DISPLACEMENT").expect("displacements");
+        let reaction = run.field("REACTION").expect("reactions");
+        let part = run.part().expect("a part");
+        for &node in &nodes {
+            let (x, u) = (part.nodes.initial[node - 1], displacement[3 * (node - 1) + 1]);
+            assert!((u + x[1]).abs() < 2e-5, "{self:?}: node {node} at {x:?} has moved by {u}, {} is right", -x[1]);
+        }
+        let lifted: f64 = reaction.iter().skip(1).step_by(3).sum();
+        assert!((lifted / (PRESSURE * WIDTH) - 1.0).abs() < 1e-5, "{self:?}: the table carries {lifted}");
+        let steps = &run.report().steps;
+        assert!(steps.iter().filter(|step| step.delta_time < 1.0).count() == 0, "{self:?}: the step was cut");
+        steps.last().expect("a step").iterations.len()
+    }
+}
+
+/// ANALYTIC. A block that one corner touches, or nothing, tilts under its load until it lies flat: its lower side moves by minus its
+/// height above the table, up to strains of 1e-5, and the table carries the load. The first tangent is singular.
+#[test]
+fn a_wedge_tilts_until_it_lies_flat() {
+    let formulations = [
+        ["ALMContactFrictionless", "alm_contact_process", "Frictionless"],
+        ["ALMContactFrictionlessComponents", "alm_contact_process", "FrictionlessComponents"],
+        ["PenaltyContactFrictionless", "penalty_contact_process", "Frictionless"],
+    ];
+    for formulation in formulations {
+        for (cells, quadratic, triangles) in [([6, 7], false, false), ([12, 15], false, true), ([5, 6], true, false)] {
+            for gap in [0.0, 1e-6, 0.01] {
+                let wedge = Wedge { formulation, cells, quadratic, triangles, gap };
+                let iterations = wedge.must_lie_flat();
+                println!("{wedge:?}: {iterations} iterations");
+                assert!(iterations <= MOST, "{wedge:?}: {iterations} iterations");
+            }
+        }
+    }
 }

@@ -459,8 +459,8 @@ impl SolverSettings {
             BuilderAction::Direct => (solver, true),
             BuilderAction::Around(make) => (make(&self.settings, solver)?, false),
         };
-        let search_after_failure =
-            self.settings.node().get("line_search_after_failure").map_or(Ok(false), Node::bool)?;
+        let is_on = |key: &str| self.settings.node().get(key).map_or(Ok(false), Node::bool);
+        let search_after_failure = is_on("line_search_after_failure")?;
         let empty = Node::from_json(&serde_json::json!({}), &self.settings.place())?;
         let iteration = NewtonSettings {
             max_iteration,
@@ -471,6 +471,7 @@ impl SolverSettings {
             move_mesh: self.settings.get_bool("move_mesh_flag")?,
             body_balance: self.body_balance()?,
             line_search: None,
+            contact_stabilization: is_on("contact_stabilization")?,
             line_search_after_failure: search_after_failure.then(|| LineSearch::new(&empty)).transpose()?,
         };
         if !scheme.takes_first_order()

@@ -253,6 +253,7 @@ impl TestRun {
             body_balance: BodyBalance::Unchecked,
             line_search: None,
             line_search_after_failure: None,
+            contact_stabilization: false,
         };
         let tolerance = Tolerance { relative: 1e-12, absolute: 1e-13 };
         let criterion = Measure { form: Form::Residual, block: Block::All, tolerance, apart: true };

@@ -68,6 +68,8 @@ pub struct NewtonSettings {
     pub line_search: Option<LineSearch>,
     /// The same for steps that have failed, where they may be tried again so.
     pub line_search_after_failure: Option<LineSearch>,
+    /// Whether bodies that contact does not restrain yet are stabilised.
+    pub contact_stabilization: bool,
 }
 
 /// Newton's iteration with its scheme, criterion, linear solver and system.

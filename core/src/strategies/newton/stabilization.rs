@@ -70,7 +70,7 @@ impl NewtonRaphson {
     /// The least length of contact stabilisation that an interaction states; `None` where inertia restrains bodies, or contact does
     /// not. Collective.
     pub(super) fn find_stabilization_length(&self, part: &ModelPart, system: &mut System) -> Option<f64> {
-        if !self.scheme.is_static() || self.settings.linear {
+        if !self.settings.contact_stabilization || !self.scheme.is_static() || self.settings.linear {
             return None;
         }
         let sets = system.interactions.iter_mut().filter_map(|interaction| interaction.active_set());
