@@ -265,8 +265,8 @@ def iterations(report):
 
 
 def settings(report):
-    """(object, keys, value) of what was laid under a deck."""
-    for line in report.get("laid_defaults", []):
+    """(object, keys, value) of the defaults that a deck was given."""
+    for line in report.get("defaults_from_kratos", report.get("laid_defaults", [])):
         path, _, value = line.partition(" = ")
         name, *keys = path.split(".")
         yield name, keys, json.loads(value)

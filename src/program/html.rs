@@ -8,7 +8,7 @@ use zelus_core::diagnostics::{Diagnostic, Place};
 use zelus_core::io::{Mark, replace_own_file};
 use zelus_core::{Error, Result};
 
-use super::report::check_output;
+use super::report::{check_output, is_report};
 use super::results::find;
 use super::say::say;
 use super::skin::view;
@@ -53,10 +53,7 @@ fn read(path: &Path) -> Result<Value> {
     };
     let bytes = std::fs::read(path).map_err(|error| wrong(format!("it cannot be read: {error}")))?;
     let report: Value = serde_json::from_slice(&bytes).map_err(|error| wrong(format!("it is no JSON: {error}")))?;
-    match report.get("laid_defaults").and(report.get("steps")) {
-        Some(_) => Ok(report),
-        None => Err(wrong("it is no report of a run".to_owned())),
-    }
+    if is_report(&report) { Ok(report) } else { Err(wrong("it is no report of a run".to_owned())) }
 }
 
 /// The pictures of the run, and why there are none of some.

@@ -3,12 +3,18 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
 use zelus_core::analysis::RunReport;
 use zelus_core::io::{FileUse, Mark, check_files, replace_own_file};
 use zelus_core::{Error, Result};
 
-/// A key that every report has.
-const MARK: Mark = Mark::Holds("\"laid_defaults\"");
+/// A key of every report, and of reports alone.
+const MARK: Mark = Mark::Holds("\"kept_every\"");
+
+/// Whether a value is the report of a run.
+pub(super) fn is_report(value: &Value) -> bool {
+    value.get("kept_every").is_some()
+}
 
 /// Refuses a file that the command line names as an output: in no folder, or one that is an input, cannot be written, or is not of an
 /// earlier run, which has the mark.

@@ -8,6 +8,8 @@ use zelus_core::diagnostics::{Diagnostic, Place};
 use zelus_core::io::results::{Column, Dataset, read_pvd, read_vtu};
 use zelus_core::{Error, Result};
 
+use super::report::is_report;
+
 /// The steps of one series, in order.
 pub(super) type Series = Vec<Frame>;
 
@@ -125,8 +127,7 @@ fn json_of(path: &Path) -> Option<Value> {
 
 /// The outputs of a report; nothing where the file is none.
 fn outputs_of(path: &Path) -> Option<Vec<PathBuf>> {
-    let report = json_of(path)?;
-    report.get("laid_defaults")?;
+    let report = json_of(path).filter(is_report)?;
     Some(report.get("outputs")?.as_array()?.iter().filter_map(Value::as_str).map(PathBuf::from).collect())
 }
 

@@ -267,24 +267,24 @@ fn more_ranks_than_elements_are_bad_input() {
 #[test]
 fn defaults_of_kratos_fill_in_what_a_deck_leaves_out() {
     let folder = case("contact_2d/matching");
-    let laid = |arguments: &[&str]| {
+    let applied = |arguments: &[&str]| {
         let output =
             zelus(folder.path(), &[&["run", "ProjectParameters.json", "--report", "run.json"], arguments].concat());
         assert!(output.status.success(), "{}", said(&output));
         let report = read_json(&folder.path().join("run.json")).expect("the report");
-        let laid: Vec<String> = serde_json::from_value(report["laid_defaults"].clone()).expect("settings");
-        (report["like"].as_str().map(str::to_owned), laid)
+        let settings: Vec<String> = serde_json::from_value(report["defaults_from_kratos"].clone()).expect("settings");
+        (report["like"].as_str().map(str::to_owned), settings)
     };
     let normals = "alm_contact_process.normal_variation = \"no_derivatives_computation\"".to_owned();
-    assert_eq!(laid(&[]), (None, vec![]));
-    let (program, settings) = laid(&["--like", "kratos"]);
+    assert_eq!(applied(&[]), (None, vec![]));
+    let (program, settings) = applied(&["--like", "kratos"]);
     assert_eq!(program.as_deref(), Some("kratos"));
     assert!(settings.contains(&normals), "{settings:?}");
     change(folder.path(), "\"problem_data\": {", "\"problem_data\": { \"like\": \"kratos\",");
-    assert_eq!(laid(&[]), (program, settings));
+    assert_eq!(applied(&[]), (program, settings));
     let normal = "\"normal_variation\": \"elemental_derivatives\", \"contact_type\"";
     change(folder.path(), "\"contact_type\"", normal);
-    let (_, settings) = laid(&[]);
+    let (_, settings) = applied(&[]);
     assert!(!settings.contains(&normals), "{settings:?}");
     let output = zelus(folder.path(), &["check", "ProjectParameters.json", "--like", "kratoss"]);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));

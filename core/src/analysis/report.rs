@@ -35,8 +35,9 @@ pub struct RunReport {
     pub problem: String,
     /// Program whose defaults hold where the deck names nothing; `None` for our own.
     pub like: Option<String>,
-    /// The settings that this gave the deck, as `object.key = value`.
-    pub laid_defaults: Vec<String>,
+    /// The settings that this gave the deck, as `object.key = value`; reports of earlier builds name them `laid_defaults`.
+    #[serde(alias = "laid_defaults")]
+    pub defaults_from_kratos: Vec<String>,
     /// Stages run.
     pub stages: Vec<String>,
     /// Sizes of the last stage.
@@ -89,7 +90,7 @@ impl Default for RunReport {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             problem: String::new(),
             like: None,
-            laid_defaults: Vec::new(),
+            defaults_from_kratos: Vec::new(),
             stages: Vec::new(),
             sizes: Sizes::default(),
             steps: Vec::new(),
@@ -178,6 +179,16 @@ mod tests {
         assert_eq!((report.converged_steps, report.kept_every), (1_000_000, 128));
         let evenly = report.steps.iter().take_while(|own| own.step < 1_000_000).map(|own| own.step);
         assert!(evenly.eq((1..1_000_000).step_by(128)));
+    }
+
+    #[test]
+    fn the_earlier_name_of_the_defaults_is_read() {
+        let defaults_from_kratos = vec!["solver_settings.rotation_dofs = true".to_owned()];
+        let report = RunReport { defaults_from_kratos, ..RunReport::default() };
+        let text = serde_json::to_string(&report).expect("JSON");
+        let earlier = text.replace("defaults_from_kratos", "laid_defaults");
+        assert!(earlier != text);
+        assert_eq!(serde_json::from_str::<RunReport>(&earlier).expect("a report"), report);
     }
 
     #[test]

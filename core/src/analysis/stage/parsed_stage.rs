@@ -100,7 +100,7 @@ fn present_deck(
             applied.len()
         ));
         report.like = Some(program.to_owned());
-        report.laid_defaults.extend(applied);
+        report.defaults_from_kratos.extend(applied);
     }
     deck
 }
