@@ -70,6 +70,19 @@ pub enum SolveError {
 }
 
 /// A solver of sparse linear systems that keeps reusable data between solves.
+///
+/// ```
+/// use zelus_linear_algebra::{Csr, Engine, Layout, Symmetry, System, create};
+///
+/// let matrix = Csr::from_triplets(2, &[(0, 0, 4.0), (0, 1, 1.0), (1, 0, 1.0), (1, 1, 3.0)]);
+/// let layout = Layout::scalar(2);
+/// let system = System::bulk(&layout, &matrix, Symmetry::PositiveDefinite);
+/// let (rhs, mut x) = ([1.0, 2.0], [0.0; 2]);
+/// let report = create(Engine::default()).solve(&system, &rhs, &mut x)?;
+/// assert!((x[0] - 1.0 / 11.0).abs() < 1e-14 && (x[1] - 7.0 / 11.0).abs() < 1e-14);
+/// assert!(report.relative_residual < 1e-14);
+/// # Ok::<(), zelus_linear_algebra::SolveError>(())
+/// ```
 pub trait LinearSolver: Send {
     /// Name of the engine, as in [`SolveReport::engine`].
     fn name(&self) -> &'static str;

@@ -62,6 +62,8 @@ fn change(deck: &mut Node, options: &RunOptions) -> Result<()> {
 /// with the values written. Several simulations in one process know nothing of each other.
 ///
 /// The monitor is passed to all computations: [`Silent`](crate::strategies::Silent) prints nothing.
+///
+/// Elements and solvers come from applications, so the page of the crate `zelus`, which links them all, has the example.
 pub struct Simulation {
     stages: Vec<StageDeck>,
     /// Stages that are over.

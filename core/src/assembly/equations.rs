@@ -44,6 +44,26 @@ pub(super) struct FixedMaster {
 }
 
 /// The map between unknowns and equations.
+///
+/// Node 1 is fixed and node 3 follows node 2 at half its motion, so one equation remains and takes half the force on node 3:
+///
+/// ```
+/// use zelus_core::assembly::{DofTable, Equations};
+/// use zelus_core::model::{DofOwners, MasterSlaveConstraint, ModelPart, Nodes, ScalarVariable};
+///
+/// let mut part = ModelPart::new("Structure");
+/// part.nodes = Nodes::new(vec![1, 2, 3], vec![[0.0; 3], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
+/// let motion = ScalarVariable { column: "MOTION", component: None };
+/// part.nodes.set_fixed(motion, &[0], true);
+/// part.add_constraints([MasterSlaveConstraint::new((2, motion), vec![((1, motion), 0.5)])]);
+/// let mut dofs = DofTable::default();
+/// dofs.number(&part, &[DofOwners::of_nodes(motion, vec![0, 1, 2])], &[]);
+///
+/// let equations = Equations::new(&dofs, &part)?;
+/// assert_eq!(equations.unknowns(), [1]);
+/// assert_eq!(equations.reduce(&[7.0, 10.0, 4.0]), [12.0]);
+/// # Ok::<(), zelus_core::Error>(())
+/// ```
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Equations {
     roles: Vec<DofRole>,

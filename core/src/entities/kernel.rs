@@ -55,7 +55,58 @@ impl<const NODES: usize> EntityView<'_, NODES> {
 /// The mathematics of one kind of element or condition with `NODES` nodes and `SIZE` unknowns.
 ///
 /// `tangent · Δ = residual`; the residual is external minus internal forces. One value of the type serves one block; state
-/// of single entities lives in `State`.
+/// of single entities lives in `State`. A spring between a node and the ground, f = −c u, as a condition of decks:
+///
+/// ```
+/// # use zelus_core::assembly::{Assembler, System};
+/// # use zelus_core::entities::*;
+/// # use zelus_core::geometry::Shape;
+/// # use zelus_core::model::{EntityRole, ModelPart, Nodes, Properties};
+/// # use zelus_core::{Result, register, register_variable};
+/// register_variable! { pub LIFT: f64 = "Displacement of the ground spring."; }
+///
+/// struct GroundSpring;
+///
+/// impl Kernel<1, 1> for GroundSpring {
+///     type State = ();
+/// #   fn new(_: &BlockRequest<'_>) -> Result<Self> { Ok(Self) }
+/// #   fn state(&self, _: &EntityView<'_, 1>, _: &StepView<'_>) -> Result<(), String> { Ok(()) }
+/// #   fn tangent(&self) -> Tangent { Tangent::Symmetric }
+///     fn unknowns() -> [LocalUnknown; 1] {
+///         LocalUnknown::of_nodes(LIFT.scalar())
+///     }
+///
+///     fn local_system(&self, spring: &EntityView<'_, 1>, _: &(), view: &StepView<'_>, _: Request,
+///                     lhs: &mut [f64], rhs: &mut [f64; 1]) -> Result<(), String> {
+///         let [u] = spring.scalars(view.nodes.history.values(&LIFT, 0));
+///         rhs[0] -= 200.0 * u;
+///         lhs.iter_mut().for_each(|k| *k += 200.0);
+///         Ok(())
+///     }
+/// }
+/// register! { ConditionEntry "GroundSpringCondition",
+///     about: "a spring between a node and the ground",
+///     source: "f = −c u",
+///     cell: Some(Shape::Point1),
+///     build: Build::Block(KernelBlock::<GroundSpring, 1, 1>::boxed),
+/// }
+/// # let mut part = ModelPart::new("Structure");
+/// # part.nodes = Nodes::new(vec![1], vec![[0.0; 3]]);
+/// # part.nodes.history.values_mut(&LIFT, 0)[0] = 0.5;
+/// # part.properties.insert(0, Properties::new(0));
+/// # part.conditions.push(1, require_kind(EntityRole::Condition, "GroundSpringCondition")?, 0, &[0]);
+/// # part.conditions.finish();
+/// # let mut system = System::default();
+/// # system.make_blocks(&part)?;
+/// # let mut assembler = Assembler::new(&part, &mut system, false);
+/// // A part with one such condition, lifted by 0.5:
+/// assembler.begin_step(&part, &system)?;
+/// assert_eq!(assembler.residual(&part, &system, None)?, [-100.0]);
+/// assembler.tangents(&part, &system, None)?;
+/// assembler.reduce();
+/// assert_eq!(assembler.system().bulk.get(0, 0), 200.0);
+/// # Ok::<(), zelus_core::Error>(())
+/// ```
 pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + 'static {
     /// History of one entity; advances only with an accepted step.
     type State: Clone + Send + Sync + Serialize + DeserializeOwned;

@@ -32,8 +32,12 @@ impl MaterialRange {
 
 /// Registers the range of constants of materials.
 ///
-/// ```ignore
-/// register_material_range! { "[0, inf)": ["DENSITY"] }
+/// ```
+/// use zelus_core::model::MaterialRange;
+///
+/// zelus_core::register_material_range! { "[0, inf)": ["DENSITY"] }
+/// let range = MaterialRange::of("DENSITY").expect("the one above");
+/// assert!(range.holds(0.0) && !range.holds(-1.0));
 /// ```
 #[macro_export]
 macro_rules! register_material_range {

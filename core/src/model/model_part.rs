@@ -24,6 +24,22 @@ use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Result, did_you_mean};
 
 /// A root model part; sub parts select from it by index.
+///
+/// ```
+/// use zelus_core::model::{ModelPart, Nodes, SubPart};
+///
+/// let mut part = ModelPart::new("Structure");
+/// part.nodes = Nodes::new(vec![1, 7], vec![[0.0; 3], [2.0, 0.0, 0.0]]);
+/// part.nodes.history.add_named("MOTION", 3);
+/// part.tree.children.insert("Tip".to_owned(), SubPart { nodes: vec![1], ..SubPart::new("Tip") });
+///
+/// // Columns are flat: three numbers a node, in ascending order of the ids.
+/// let tip = part.part("Structure.Tip")?.nodes[0] as usize;
+/// part.nodes.history.field_mut("MOTION")?.levels[0][3 * tip] = 0.1;
+/// assert_eq!(part.nodes.ids[tip], 7);
+/// assert_eq!(part.nodes.history.level("MOTION", 0), [0.0, 0.0, 0.0, 0.1, 0.0, 0.0]);
+/// # Ok::<(), zelus_core::Error>(())
+/// ```
 #[derive(Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ModelPart {
     /// Name of the root, e.g. `Structure`.

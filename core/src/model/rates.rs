@@ -90,8 +90,12 @@ impl Rates {
 
 /// Registers how an unknown moves.
 ///
-/// ```ignore
-/// register_rates! { "TEMPERATURE", first: "TEMPERATURE_RATE", reaction: Some("REACTION_FLUX") }
+/// ```
+/// use zelus_core::model::Rates;
+///
+/// zelus_core::register_rates! { "TEMPERATURE", first: "TEMPERATURE_RATE", reaction: Some("REACTION_FLUX") }
+/// let rates = Rates::of("TEMPERATURE").expect("those above");
+/// assert_eq!((rates.first, rates.second, rates.reaction), ("TEMPERATURE_RATE", None, Some("REACTION_FLUX")));
 /// ```
 #[macro_export]
 macro_rules! register_rates {

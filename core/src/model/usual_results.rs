@@ -31,8 +31,11 @@ impl UsualResults {
 
 /// Registers default output variables.
 ///
-/// ```ignore
-/// register_usual_results! { values: [], gauss: ["VON_MISES_STRESS"] }
+/// ```
+/// use zelus_core::model::UsualResults;
+///
+/// zelus_core::register_usual_results! { values: [], gauss: ["VON_MISES_STRESS"] }
+/// assert_eq!(UsualResults::gauss(), ["VON_MISES_STRESS"]);
 /// ```
 #[macro_export]
 macro_rules! register_usual_results {

@@ -6,6 +6,20 @@ use super::node::{Node, Value};
 use crate::diagnostics::{Diagnostic, Place, Report, Result, did_you_mean};
 
 /// The checked settings of one object, complete with defaults.
+///
+/// ```
+/// use zelus_core::parameters::{Defaults, Document, Settings};
+///
+/// let defaults = Defaults::parse("spring_process", r#"{ "stiffness": 1.0, "steps": 10 }"#)?;
+/// let given = Document::from_str(r#"{ "stiffness": 250 }"#, "deck.json")?.root;
+/// let (settings, _warnings) = Settings::check(&given, &defaults)?;
+/// assert_eq!((settings.get_f64("stiffness")?, settings.get_usize("steps")?), (250.0, 10));
+///
+/// let misspelt = Document::from_str(r#"{ "stifness": 250 }"#, "deck.json")?.root;
+/// let error = Settings::check(&misspelt, &defaults).unwrap_err().to_string();
+/// assert!(error.contains("deck.json:1:3") && error.contains("did you mean \"stiffness\"?"));
+/// # Ok::<(), zelus_core::Error>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Settings {
     name: String,

@@ -21,6 +21,43 @@ use crate::registry::Entry;
 /// [`before_loop`](Process::before_loop); then each step
 /// [`begin_step`](Process::begin_step) – solve – [`end_step`](Process::end_step) – output; at last
 /// [`finalize`](Process::finalize). A step that is cut and retried calls `begin_step` again for each part of it.
+///
+/// ```
+/// use std::path::Path;
+/// use zelus_core::diagnostics::{Report, Result};
+/// use zelus_core::model::{Model, ModelPart};
+/// use zelus_core::parameters::Document;
+/// use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
+/// use zelus_core::{register, registry};
+///
+/// /// WIND of the model: a rate times the time.
+/// struct Wind(f64);
+///
+/// impl Process for Wind {
+///     fn begin_step(&mut self, model: &mut Model) -> Result<()> {
+///         let info = &mut model.root_mut("Structure")?.info;
+///         info.values.insert("WIND", self.0 * info.time);
+///         Ok(())
+///     }
+/// }
+/// register! { ProcessEntry "wind_process",
+///     about: "WIND: a rate times the time",
+///     defaults: r#"{ "rate": 1.0 }"#,
+///     build: |request| Ok(Box::new(Wind(request.settings()?.get_f64("rate")?))),
+/// }
+/// # let mut model = Model::default();
+/// # model.add(ModelPart::new("Structure"));
+/// # let (entry, folder) = (registry::require::<ProcessEntry>("wind_process")?, Path::new("."));
+/// # let parameters = Document::from_str(r#"{ "rate": 3.0 }"#, "deck.json")?.root;
+/// # let report = &mut Report::new();
+/// # let mut request = ProcessRequest { entry, parameters: &parameters, model: &mut model, folder, results: folder, report };
+/// # let mut process = (entry.build)(&mut request)?;
+/// // A deck that names "wind_process" with "rate" 3:
+/// model.root_mut("Structure")?.info.time = 2.0;
+/// process.begin_step(&mut model)?;
+/// assert_eq!(model.root("Structure")?.info.value_or("WIND", 0.0), 6.0);
+/// # Ok::<(), zelus_core::Error>(())
+/// ```
 pub trait Process: Send {
     /// Mesh and materials are read, the solver is not ready yet (Kratos: `ExecuteInitialize`).
     ///

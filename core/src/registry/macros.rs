@@ -5,13 +5,22 @@
 /// The first word is the type of the entry. `aliases`, `about`, `source`, `defaults` and `like` are fields of every
 /// [`Entry`](crate::registry::Entry); `build` makes the object; further facts are methods of the entry's type.
 ///
-/// ```ignore
-/// register! { ProcessEntry "assign_flag_process",
-///     aliases: &["AssignFlagProcess"],
-///     about: "sets or unsets a flag of nodes or entities",
-///     defaults: include_str!("…/configs/processes/assign_flag_process.json"),
-///     build: AssignFlag::boxed,
+/// ```
+/// use zelus_core::processes::{Process, ProcessEntry};
+/// use zelus_core::{register, registry};
+///
+/// struct Pause;
+///
+/// impl Process for Pause {}
+///
+/// register! { ProcessEntry "pause_process",
+///     aliases: &["PauseProcess"],
+///     about: "waits",
+///     defaults: r#"{ "seconds": 1.0 }"#, // as a rule a file of `configs`, by include_str!
+///     build: |_| Ok(Box::new(Pause)),
 /// }
+/// let entry = registry::find::<ProcessEntry>("PauseProcess").expect("the one above");
+/// assert_eq!((entry.name, entry.about), ("pause_process", "waits"));
 /// ```
 #[macro_export]
 macro_rules! register {
@@ -51,8 +60,13 @@ macro_rules! register {
 
 /// Registers beginnings of names that are known and not there, each with its replacement.
 ///
-/// ```ignore
+/// ```
+/// use zelus_core::entities::ElementEntry;
+/// use zelus_core::{register_absent, registry};
+///
 /// register_absent! { ElementEntry ["Shell", "Sprism"] => "use solid elements, three or more across the thickness" }
+/// let problem = registry::require::<ElementEntry>("ShellThinElement3D3N").err().expect("no such element");
+/// assert_eq!(problem.remedy.as_deref(), Some("use solid elements, three or more across the thickness"));
 /// ```
 #[macro_export]
 macro_rules! register_absent {
@@ -65,15 +79,22 @@ macro_rules! register_absent {
 /// Declares a kind of thing that decks name: the type of its entries, the word of `zelus list`, the code of the error for an unknown
 /// name, the factory of an entry, and further facts with the values they have where none is given.
 ///
-/// ```ignore
+/// ```
+/// use zelus_core::{register, registered_kind, registry};
+///
 /// registered_kind! {
-///     /// A process that decks name.
-///     pub struct ProcessEntry("process", "unknown-process") {
-///         build: ProcessFactory;
-///         /// Keys that name what every rank must have whole.
-///         common: &'static [&'static str] = &[],
+///     /// A law of the drag of a body by its speed.
+///     pub struct DragLawEntry("drag_law", "unknown-drag-law") {
+///         build: fn(f64) -> f64;
+///         /// Whether drag acts from all sides alike.
+///         isotropic: bool = true,
 ///     }
 /// }
+/// register! { DragLawEntry "quadratic", about: "drag by the square of the speed", isotropic: false, build: |speed| speed * speed }
+///
+/// let law = registry::require::<DragLawEntry>("quadratic").expect("the one above");
+/// assert_eq!(((law.build)(3.0), law.isotropic), (9.0, false));
+/// assert_eq!(registry::require::<DragLawEntry>("cubic").err().expect("no such law").code, "unknown-drag-law");
 /// ```
 #[macro_export]
 macro_rules! registered_kind {

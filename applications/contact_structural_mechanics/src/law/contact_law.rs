@@ -77,7 +77,32 @@ pub enum SlipMeasure {
 
 /// A contact law, written once over the scalar.
 ///
-/// It must be affine in the multiplier for given states.
+/// It must be affine in the multiplier for given states. Frictionless contact without penalty in the force is p = k λ n with the row
+/// k g̃:
+///
+/// ```
+/// # use zelus_contact_structural_mechanics::law::*;
+/// # use zelus_contact_structural_mechanics::laws::alm_frictionless::AlmFrictionless;
+/// # let node = SlaveNode {
+/// #     state: NodeState::Slip, penalty: 1.0, compliance: 0.0, uzawa_pressure: 0.0, stiffness: 1.0, area: 1.0,
+/// #     dynamic_factor: 1.0, friction: Bound { coefficient: 0.0, threshold: 0.0 }, tangent: [0.0; 3],
+/// #     rotation: DirectionRotation::default(), constraints: Default::default(), constraint_weight: 1.0,
+/// #     history_traction: [0.0; 3], traction: [0.0; 3],
+/// # };
+/// // A slave node in contact, of area 1, whose pair has closed by 0.25.
+/// assert!(node.state.is_active());
+/// let inputs = NodeInputs {
+///     gap: -0.25,
+///     normal: [0.0, 0.0, 1.0],
+///     multiplier: [-3.0, 0.0, 0.0],
+///     area: 1.0,
+///     slip: [0.0; 3],
+///     history: [0.0; 3],
+/// };
+/// let law = AlmFrictionless { scale_factor: 10.0, augmentation: Augmentation::Node };
+/// let forces = law.evaluate(&node, &inputs);
+/// assert_eq!((forces.force, forces.multiplier[0]), (Some([0.0, 0.0, -30.0]), -2.5));
+/// ```
 pub trait NodeLaw: Send + Sync + 'static {
     /// Its multiplier.
     const MULTIPLIER: Multiplier;

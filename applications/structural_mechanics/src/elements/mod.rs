@@ -1,7 +1,37 @@
 //! Elements: solids (one kernel, four formulations), trusses, springs and masses.
 //!
 //! [`Solid`] does the integration; a [`Formulation`] says on which configuration and with which strain. A formulation's
-//! file registers its elements for every shape.
+//! file registers its elements for every shape. The framework makes blocks of the elements of a part and assembles them:
+//!
+//! ```
+//! # use zelus_core::assembly::{Assembler, System};
+//! # use zelus_core::entities::require_kind;
+//! # use zelus_core::model::{EntityRole, ModelPart, Nodes, Properties, PropertyValue};
+//! # use zelus_structural_mechanics::variables::DISPLACEMENT;
+//! // A bar of length 2, A = 3 and E = 10, fixed at its left end: EA/L = 15 remains.
+//! let mut part = ModelPart::new("Structure");
+//! part.nodes = Nodes::new(vec![1, 2], vec![[0.0; 3], [2.0, 0.0, 0.0]]);
+//! part.nodes.history.add(&DISPLACEMENT);
+//! let mut material = Properties { law: Some("TrussConstitutiveLaw".to_owned()), ..Properties::new(1) };
+//! for (name, value) in [("YOUNG_MODULUS", 10.0), ("CROSS_AREA", 3.0)] {
+//!     material.values.insert(name.to_owned(), PropertyValue::Number(value));
+//! }
+//! part.properties.insert(1, material);
+//! part.elements.push(1, require_kind(EntityRole::Element, "LinearTrussElement2D2N")?, 1, &[0, 1]);
+//! part.elements.finish();
+//! part.nodes.set_fixed(DISPLACEMENT.component(0), &[0], true);
+//! part.nodes.set_fixed(DISPLACEMENT.component(1), &[0, 1], true);
+//!
+//! let mut system = System::default();
+//! system.make_blocks(&part)?;
+//! let mut assembler = Assembler::new(&part, &mut system, false);
+//! assembler.begin_step(&part, &system)?;
+//! assembler.tangents(&part, &system, None)?;
+//! assembler.reduce();
+//! assert_eq!(assembler.equations().len(), 1);
+//! assert_eq!(assembler.system().bulk.get(0, 0), 15.0);
+//! # Ok::<(), zelus_core::Error>(())
+//! ```
 
 mod absent;
 mod axisymmetric;

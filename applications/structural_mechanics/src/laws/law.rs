@@ -65,6 +65,23 @@ pub enum StressMeasure {
 }
 
 /// Stress, tangent and energy of a material point with `S` Voigt components.
+///
+/// ```
+/// use zelus_core::model::{Properties, PropertyValue};
+/// use zelus_structural_mechanics::laws::{ConstitutiveLaw, StrainState, law_of};
+///
+/// let mut steel = Properties::new(1);
+/// steel.law = Some("LinearElastic3DLaw".to_owned());
+/// steel.values.insert("YOUNG_MODULUS".to_owned(), PropertyValue::Number(200e9));
+/// steel.values.insert("POISSON_RATIO".to_owned(), PropertyValue::Number(0.25));
+/// let law = law_of::<6>(&steel, false)?;
+///
+/// // Uniaxial strain: σ_xx = (λ + 2μ) ε with λ = μ = 80 GPa.
+/// let state = StrainState { strain: [1e-3, 0.0, 0.0, 0.0, 0.0, 0.0], ..StrainState::REST };
+/// let stress = law.pk2(&state, None);
+/// assert!((stress[0] / 240e6 - 1.0).abs() < 1e-14 && (stress[1] / 80e6 - 1.0).abs() < 1e-14);
+/// # Ok::<(), zelus_core::Error>(())
+/// ```
 pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
     /// Second Piola–Kirchhoff stress; its derivative with respect to the strain too, when asked.
     fn pk2(&self, state: &StrainState<'_, S>, tangent: Option<&mut Matrix<S>>) -> [f64; S];
