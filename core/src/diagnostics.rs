@@ -246,6 +246,31 @@ pub fn unfit(fact: impl Into<String>) -> Error {
 /// Result of everything in the framework that can fail.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
+/// A number with its noun and verb, as messages say it.
+///
+/// ```
+/// use zelus_core::diagnostics::counted;
+///
+/// assert_eq!([1, 3].map(|count| counted(count, "node has", "nodes have")), ["1 node has", "3 nodes have"]);
+/// ```
+pub fn counted(count: usize, one: &str, several: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { several })
+}
+
+/// A point as messages name it: 7 significant digits, and 0 for round-off of the largest coordinate.
+///
+/// ```
+/// use zelus_core::diagnostics::coordinates;
+///
+/// assert_eq!(coordinates([0.1 + 0.2, 2.0 / 3.0, -2e-16]), "(0.3, 0.6666667, 0)");
+/// ```
+pub fn coordinates(point: [f64; 3]) -> String {
+    let largest = point.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let rounded = |x: f64| if x.abs() < 1e-12 * largest { 0.0 } else { format!("{x:.6e}").parse().unwrap_or(x) };
+    let [x, y, z] = point.map(rounded);
+    format!("({x}, {y}, {z})")
+}
+
 /// The names nearest to `wanted`, best first, at most three; for "did you mean".
 pub fn nearest<'a>(wanted: &str, names: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
     let lower = wanted.to_lowercase();

@@ -252,7 +252,7 @@ fn what_cannot_be_condensed_is_named_once_and_solved_whole() {
         ("mesh_tying/hexahedra_on_tetrahedra", &["VECTOR_LAGRANGE_MULTIPLIER_", " acts on DISPLACEMENT_"]),
         (
             "contact_2d/standing_on_corner",
-            &["the free unknowns of its node see", " of LAGRANGE_MULTIPLIER_CONTACT_PRESSURE"],
+            &["the free unknowns of its node have", " of LAGRANGE_MULTIPLIER_CONTACT_PRESSURE"],
         ),
     ] {
         let direct = CondensedRun::converged(case, DIRECT, as_it_is);

@@ -325,7 +325,7 @@ fn forces_are_in_balance_and_turn_with_the_bodies() {
     });
 }
 
-/// The traction of a law that remembers is not a function of displacements.
+/// The traction of a law with a history is not a function of displacements.
 #[test]
 fn slaves_without_tractions_are_refused() {
     let scratch = scratch_copy(&root().join("tests/cases/contact_2d/nitsche"));
@@ -334,7 +334,7 @@ fn slaves_without_tractions_are_refused() {
     change(scratch.path(), materials, "\"POISSON_RATIO\"", "\"YIELD_STRESS\": 1e9, \"POISSON_RATIO\"");
     let output = zelus(scratch.path(), &["run", "ProjectParameters.json"]);
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    for expected in ["error[no-tractions]", "its law remembers", "let the other body be the slave"] {
+    for expected in ["error[no-tractions]", "its law has a history", "let the other body be the slave"] {
         assert!(said(&output).contains(expected), "{}", said(&output));
     }
 }

@@ -793,7 +793,7 @@ pub const MISTAKES: &[Mistake] = &[
         exit: 0,
         told: Told::Before,
         code: "face-pressure-mixed",
-        names: "presses on 1 faces and pulls at 1",
+        names: "presses on 1 face and pulls at 1",
     },
     Mistake {
         what: "a table that ends before the run",
@@ -802,7 +802,7 @@ pub const MISTAKES: &[Mistake] = &[
         exit: 0,
         told: Told::Before,
         code: "table-ends-early",
-        names: "load.csv ends at time 4, and the run goes on until 8",
+        names: "load.csv ends at time 4, and the run continues until 8",
     },
     Mistake {
         what: "a contact process listed twice",

@@ -63,7 +63,7 @@ fn check_says_which_way_face_pressures_act() {
     support::change(scratch.path(), "mesh.mdpa", "3 0 8 7\n", "3 0 7 8\n");
     let text = check(scratch.path());
     assert!(
-        text.contains("warning[face-pressure-mixed]") && text.contains("presses on 1 faces and pulls at 1"),
+        text.contains("warning[face-pressure-mixed]") && text.contains("presses on 1 face and pulls at 1"),
         "{text}"
     );
 }

@@ -85,7 +85,10 @@ fn adjusted_nodes_begin_on_the_master_without_strain() {
         let scratch = sunk(depth, |deck| deck["solver_settings"]["contact_settings"]["adjust_initial"] = json!(true));
         let (code, said) = run(scratch.path(), "run");
         assert_eq!(code, Some(0), "{said}");
-        assert!(said.contains("note[adjusted-initial]") && said.contains("moved onto it without strain"), "{said}");
+        assert!(
+            said.contains("note[adjusted-initial]") && said.contains("moved onto the master without strain"),
+            "{said}"
+        );
         assert!(!said.contains("initial-penetration"), "{said}");
         let report = read_json(&scratch.path().join("report.json")).expect("a report");
         let balance = &report["steps"][0]["balance"];
@@ -143,8 +146,7 @@ fn entities_listed_twice_are_named() {
     list_again(scratch.path(), "Begin Elements", 901, "Lower", "SubModelPartElements");
     let (code, said) = run(scratch.path(), "check");
     assert_eq!(code, Some(0), "{said}");
-    let words =
-        ["warning[listed-twice]", "1 elements have the nodes of others", " 901 with those of 1:", "counts twice"];
+    let words = ["warning[listed-twice]", "1 element has the nodes of others", " 901 with those of 1:", "counts twice"];
     words.iter().for_each(|words| assert!(said.contains(words), "{words}: {said}"));
 
     let scratch = case("contact_2d/matching", |_| {});

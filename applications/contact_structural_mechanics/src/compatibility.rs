@@ -49,7 +49,7 @@ const RULES: [Rule; 4] = [
     (
         |formulation, wanted| wanted.explicit && matches!(formulation.multiplier, Multiplier::Body),
         Refusal {
-            reason: "explicit steps do not iterate, and tractions of bodies answer to the step they are made in",
+            reason: "explicit steps do not iterate, and tractions of bodies follow from the displacements of the step",
             remedy: "use explicit_penalty_contact_process with \"mortar_type\": \"PenaltyContactFrictionless\"",
         },
     ),

@@ -22,7 +22,7 @@ register_variable! {
     pub NODAL_AREA: f64 = "Area (length in the plane) of contact that belongs to a slave node.";
     pub NODAL_H: f64 = "Distance to the nearest node that shares an element (length).";
     pub INITIAL_PENALTY: f64 = "Penalty parameter of contact (force per length cubed).";
-    pub MULTIPLIER_WEIGHT: f64 = "What the equation of a slave node counts its multiplier with where it states a traction (force times area).";
+    pub MULTIPLIER_WEIGHT: f64 = "Weight of the multiplier in the equation of a slave node that states a traction (force times area).";
     pub DYNAMIC_FACTOR: f64 = "Factor of contact forces in the step in which a gap closes.";
     pub FRICTION_COEFFICIENT: f64 = "Coulomb's coefficient of friction.";
     pub TRESCA_FRICTION_THRESHOLD: f64 = "Tresca's limit of the tangential traction (force per area).";

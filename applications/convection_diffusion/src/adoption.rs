@@ -1,6 +1,6 @@
 //! Mesh of a solver of heat: its own elements and faces, turned the right way, and materials at nodes.
 
-use zelus_core::diagnostics::{Diagnostic, Report, Result};
+use zelus_core::diagnostics::{Diagnostic, Report, Result, counted};
 use zelus_core::entities::find_kind;
 use zelus_core::geometry::{Shape, mapping};
 use zelus_core::model::{EntityRole, EntityTable, ModelPart, Properties};
@@ -37,7 +37,10 @@ pub fn adopt(settings: &Settings, part: &mut ModelPart, report: &mut Report) -> 
         }
         let turned = turn(elements, &nodes.initial, info.domain_size);
         if turned > 0 {
-            let fact = format!("{turned} elements were turned inside out; the order of their nodes is reversed");
+            let fact = format!(
+                "the order of nodes is reversed in {} inside out",
+                counted(turned, "element, which was", "elements, which were")
+            );
             report.push(Diagnostic::note("turned-elements", fact).remedy("nothing to do"));
         }
     }

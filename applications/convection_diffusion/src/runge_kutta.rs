@@ -80,7 +80,7 @@ impl RungeKutta {
         let empty = empty
             .map(|(dof, _)| format!("node {} stores no {}", part.nodes.ids[dof.node as usize], dof.variable.column));
         if let Some(empty) = part.ranks.first_to_say(empty) {
-            let fact = format!("{empty}: explicit steps divide by what is stored");
+            let fact = format!("{empty}: explicit steps divide by the storage");
             let remedy = "use elements QSConvectionDiffusionExplicit or DConvectionDiffusionExplicit, positive density and \
                           specific heat, or \"time_integration_method\": \"implicit\"";
             return Err(Diagnostic::error("no-storage", fact).remedy(remedy).into());

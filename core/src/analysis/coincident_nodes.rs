@@ -3,7 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 use zelus_linear_algebra::{Components, parallel};
 
-use crate::diagnostics::{Diagnostic, Report};
+use crate::diagnostics::{Diagnostic, Report, coordinates, counted};
 use crate::model::{ModelPart, bodies_of_nodes};
 use crate::partition::Surface;
 use crate::vector3::{dot, norm, sub};
@@ -39,11 +39,11 @@ pub(super) fn warn_of_coincident_nodes(part: &ModelPart, surfaces: &[Surface], p
         return;
     }
     let ids = |node: u32| part.nodes.ids[node as usize];
-    let named = found.iter().take(NAMED).map(|&[a, b]| {
-        let [x, y, z] = part.nodes.initial[a as usize];
-        format!("{} and {} at ({x}, {y}, {z})", ids(a), ids(b))
-    });
-    let places = if found.len() == 1 { "1 place".to_owned() } else { format!("{} places", found.len()) };
+    let named = found
+        .iter()
+        .take(NAMED)
+        .map(|&[a, b]| format!("{} and {} at {}", ids(a), ids(b), coordinates(part.nodes.initial[a as usize])));
+    let places = counted(found.len(), "place", "places");
     let more = if found.len() > NAMED { ", …" } else { "" };
     let fact = format!(
         "two nodes stand at {places} and nothing couples them: {}{more}; the mesh is cut there",

@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::diagnostics::{Diagnostic, Report};
+use crate::diagnostics::{Diagnostic, Report, counted};
 use crate::model::ModelPart;
 
 /// Warns of faces with loads whose nodes belong to bodies, but to no element in common: their loads act within or across bodies.
@@ -33,11 +33,7 @@ pub(super) fn warn_of_loose_loads(part: &ModelPart, problems: &mut Report) {
     };
     let loose: Vec<&u32> = faces.iter().filter(is_loose).collect();
     let Some(&&first) = loose.first() else { return };
-    let word = if loose.len() == 1 {
-        "1 condition with a load is"
-    } else {
-        &format!("{} conditions with loads are", loose.len())
-    };
+    let word = counted(loose.len(), "condition with a load is", "conditions with loads are");
     let ids: Vec<String> =
         conditions.nodes(first).iter().map(|&node| part.nodes.ids[node as usize].to_string()).collect();
     let fact = format!(

@@ -3,7 +3,7 @@
 use rustc_hash::FxHashMap;
 use zelus_linear_algebra::parallel;
 
-use crate::diagnostics::{Diagnostic, Report};
+use crate::diagnostics::{Diagnostic, Report, counted};
 use crate::geometry::Shape;
 use crate::model::{EntityRole, EntityTable, ModelPart, ScalarVariable, SubPart, mesh_box};
 use crate::processes::{Load, LoadCarrier, Prescription, Process};
@@ -32,11 +32,14 @@ pub(super) fn warn_of_twins(part: &ModelPart, problems: &mut Report) {
         let mut twins = twins(table, wanted);
         twins.retain(|pair| role == EntityRole::Element || share_part(&part.tree, pair));
         let Some(&[first, second]) = twins.first() else { continue };
-        let word = if role == EntityRole::Element { "elements" } else { "conditions" };
+        let [one, several] = match role {
+            EntityRole::Element => ["element has", "elements have"],
+            EntityRole::Condition => ["condition has", "conditions have"],
+        };
         let (kind, ids) = (table.kinds[second as usize].name, &table.ids);
         let fact = format!(
-            "{} {word} have the nodes of others, the first is {kind} {} with those of {}: what they do counts twice",
-            twins.len(),
+            "{} the nodes of others, the first is {kind} {} with those of {}: their contribution counts twice",
+            counted(twins.len(), one, several),
             ids[second as usize],
             ids[first as usize]
         );
@@ -69,7 +72,7 @@ pub(super) fn warn_of_collapsed(part: &ModelPart, problems: &mut Report) {
     let found = parallel::select(table.len(), ENTITIES, |at| repeated(at as u32).is_some());
     let Some((&first, node)) = found.first().and_then(|first| Some((first, repeated(*first)?))) else { return };
     let kind = table.kinds[first as usize];
-    let word = if found.len() == 1 { "1 element names".to_owned() } else { format!("{} elements name", found.len()) };
+    let word = counted(found.len(), "element names", "elements name");
     let fact = format!(
         "{word} a node twice, the first is {} {} with node {}: an edge of it has no length",
         kind.name, table.ids[first as usize], part.nodes.ids[node as usize]
@@ -161,8 +164,12 @@ pub(super) fn warn_of_contradictions(
         }
         for ([before, at], node, [other, value], count) in &found {
             let fact = format!(
-                "at time {time}, {} nodes get two values of {}, the first is node {}: {other} by {} and {value} by {}, which wins",
-                count, all[*at].variable, part.nodes.ids[*node as usize], all[*before].by, all[*at].by
+                "at time {time}, {} two values of {}, the first is node {}: {other} by {} and {value} by {}, which wins",
+                counted(*count, "node gets", "nodes get"),
+                all[*at].variable,
+                part.nodes.ids[*node as usize],
+                all[*before].by,
+                all[*at].by
             );
             let remedy = "take the nodes out of one of the parts, or leave the unknown to one of the processes";
             problems.push(Diagnostic::warning("contradicting-values", fact).remedy(remedy));

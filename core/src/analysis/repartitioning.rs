@@ -174,7 +174,7 @@ impl Repartitioning {
                 }
                 let keys = if values.is_empty() { Vec::new() } else { keys(self, &places, values.len()) };
                 if keys.len() != values.len() {
-                    self.fail("what its ranks remember does not fit their mesh");
+                    self.fail("the history of its ranks does not fit their mesh");
                 }
                 let column = &mut self.shown[self.at];
                 for (key, &value) in keys.into_iter().zip(&*values) {

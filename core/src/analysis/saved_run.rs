@@ -219,7 +219,7 @@ pub(super) fn check_mesh(saved: &ModelPart, read: &ModelPart) -> Result<()> {
         && has_columns(&saved.slave_nodes.history, &read.slave_nodes.history)
         && has_columns(&saved.elements.data, &read.elements.data)
         && has_columns(&saved.conditions.data, &read.conditions.data);
-    if fits { Ok(()) } else { Err(other_deck(format!("what it holds of {} is not what the deck makes", read.name))) }
+    if fits { Ok(()) } else { Err(other_deck(format!("its part {} does not fit the deck", read.name))) }
 }
 
 /// The models of all ranks as one that has everything, of which a stage takes its share; that of one rank as it is.
@@ -241,6 +241,6 @@ pub(super) fn whole(mut models: Vec<Model>) -> Result<Model> {
 /// Error: a saved run does not belong to the deck.
 pub(super) fn other_deck(fact: impl Into<String>) -> crate::diagnostics::Error {
     Diagnostic::error("saved-run", fact)
-        .remedy("go on with the deck and mesh it was saved by, or run this deck from its start")
+        .remedy("restart with the deck and mesh that it was saved by, or run this deck from its start")
         .into()
 }

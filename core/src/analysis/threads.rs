@@ -37,7 +37,7 @@ pub(super) fn pool(wanted: Option<usize>) -> Result<(ThreadPool, Option<Diagnost
         let mib = own >> 20;
         let fact =
             format!("{fitting} threads run in place of {wanted}: each reserves {mib} MiB of a limited address space");
-        Diagnostic::warning("address-space", fact).remedy("raise the limit (ulimit -v); answers are the same")
+        Diagnostic::warning("address-space", fact).remedy("raise the limit (ulimit -v); results are the same")
     });
     Ok((pool, fewer))
 }

@@ -42,7 +42,7 @@ fn unpack<T: DeserializeOwned>(words: &[u32]) -> Result<T> {
 }
 
 fn failed(error: &dyn std::error::Error) -> Error {
-    Error::System(format!("what rank 0 sends to another one is lost: {error}"))
+    Error::System(format!("a message of rank 0 to another rank is lost: {error}"))
 }
 
 #[cfg(test)]

@@ -87,8 +87,8 @@ pub(crate) fn repartition(
         bytes.clear();
         for &id in &ids {
             let found = pool.get(&(kind.as_str(), id)).ok_or_else(|| {
-                let fact = format!("what {kind} {id} remembers is not in the saved run");
-                Diagnostic::error("saved-state", fact).remedy("go on with the mesh and deck it was saved by")
+                let fact = format!("the history of {kind} {id} is not in the saved run");
+                Diagnostic::error("saved-state", fact).remedy("restart with the mesh and deck that it was saved by")
             })?;
             bytes.extend_from_slice(found);
             ends.push(bytes.len());

@@ -119,7 +119,7 @@ impl SavedFile {
         let version = number(&head, MARK.len(), 4);
         if let Some(version) = version.filter(|version| *version != u64::from(VERSION)) {
             let fact = format!("it is of version {version} of saved runs, and this program reads {VERSION}");
-            let remedy = "go on with the program that has written it, or run the deck from its start";
+            let remedy = "restart with the program that has written it, or run the deck from its start";
             return Err(problem(path, fact, remedy));
         }
         let ranks = number(&head, MARK.len() + 4, 4).unwrap_or(0);
@@ -160,8 +160,8 @@ impl SavedFile {
             return Err(problem(&self.path, fact, "run the deck from its start, or take an older file"));
         }
         packed::from_bytes(&contents).map_err(|error| {
-            let remedy = "go on with the program that has written it, with all that is registered there";
-            problem(&self.path, format!("this program does not know what it holds: {error}"), remedy)
+            let remedy = "restart with the program that has written it, plugins included";
+            problem(&self.path, format!("this program does not know its content: {error}"), remedy)
         })
     }
 }

@@ -63,11 +63,11 @@ struct EntityCounts {
 fn check_nodes(nodes: &Nodes) -> CheckResult {
     let count = nodes.len();
     holds(ascends(&nodes.ids), "ids of nodes do not ascend")?;
-    holds(nodes.initial.len() == count && nodes.current.len() == count, "not every node has a place")?;
+    holds(nodes.initial.len() == count && nodes.current.len() == count, "not every node has coordinates")?;
     check_fields(&nodes.history, count)?;
     check_fields(&nodes.values, count)?;
     holds(nodes.flags.is_sound(count), "flags are not those of its nodes")?;
-    holds(nodes.fixities.is_sound(count), "what is prescribed is not of its nodes")
+    holds(nodes.fixities.is_sound(count), "prescribed unknowns are not those of its nodes")
 }
 
 fn check_fields(fields: &Fields, count: usize) -> CheckResult {
@@ -103,7 +103,7 @@ fn check_tree(tree: &SubPart, counts: &EntityCounts) -> CheckResult {
     ];
     let known =
         |(list, count): (&Vec<u32>, usize)| ascends(list) && list.last().is_none_or(|&at| (at as usize) < count);
-    holds(lists.into_iter().all(known), &format!("the sub part {} selects what is not there", tree.name))?;
+    holds(lists.into_iter().all(known), &format!("the sub part {} selects entities that do not exist", tree.name))?;
     tree.children.values().try_for_each(|child| check_tree(child, counts))
 }
 

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::assign_to_entities::centre;
-use crate::diagnostics::Diagnostic;
+use crate::diagnostics::{Diagnostic, counted};
 use crate::entities::{BlockFactory, BlockRequest, LocalSystems, Request, block_factory};
 use crate::model::{EntityKind, Field, ModelPart, ScalarVariable};
 use crate::vector3::{dot, sub};
@@ -100,11 +100,12 @@ fn pulling_by(
         Faces { pulled: 0, .. } => None,
         Faces { pressed: 0, pulled } => {
             let fact = format!("{which} {above} zero pulls at all {pulled} faces it is given to: {rule}");
-            Some(Diagnostic::note("face-pressure-pulls", fact).remedy("to press, turn the sign of the value"))
+            Some(Diagnostic::note("face-pressure-pulls", fact).remedy("to press, change the sign of the value"))
         }
         Faces { pressed, pulled } => {
             let fact = format!(
-                "{which} {above} zero presses on {pressed} faces and pulls at {pulled} of the same part: {rule}"
+                "{which} {above} zero presses on {} and pulls at {pulled} of the same part: {rule}",
+                counted(pressed, "face", "faces")
             );
             let remedy = "list the nodes of all faces the same way round, seen from outside";
             Some(Diagnostic::warning("face-pressure-mixed", fact).remedy(remedy))

@@ -1,6 +1,6 @@
 //! A table over time that a process reads while it acts.
 
-use crate::diagnostics::{Diagnostic, Place};
+use crate::diagnostics::{Diagnostic, Place, counted};
 use crate::model::Table;
 use crate::parameters::Interval;
 
@@ -36,8 +36,7 @@ impl TimeTable {
     /// The warning that it has empty cells.
     pub fn lacks_values(&self) -> Option<Diagnostic> {
         let Self { name, missing, .. } = self;
-        let cells =
-            if *missing == 1 { "1 empty cell, which counts" } else { &format!("{missing} empty cells, which count") };
+        let cells = counted(*missing, "empty cell, which counts", "empty cells, which count");
         let fact = format!("the table {name} has {cells} as 0");
         let problem = Diagnostic::warning("missing-values", fact).at(self.place.clone());
         (*missing > 0).then(|| problem.remedy("write the values, or give \"na_replace\", the number in their place"))
@@ -68,8 +67,8 @@ impl TimeTable {
         if !acts || last >= needed - SHORT * (end - start) {
             return None;
         }
-        let until = if needed < end { "its process acts" } else { "the run goes on" };
-        let follows = if changes { "goes on with the last slope" } else { "keeps the last value" };
+        let until = if needed < end { "its process acts" } else { "the run continues" };
+        let follows = if changes { "continues with the last slope" } else { "keeps the last value" };
         let fact = format!(
             "the table {} ends at time {last}, and {until} until {needed}: beyond its end the value {follows}",
             self.name

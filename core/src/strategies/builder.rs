@@ -27,10 +27,10 @@ registered_kind! {
 
 register! { BuilderEntry "block",
     aliases: &["block_lagrange"],
-    about: "fixities and constraints are eliminated; every builder gives the same answer",
+    about: "fixities and constraints are eliminated; results do not depend on the builder",
     build: BuilderAction::Direct,
 }
 register! { BuilderEntry "elimination",
-    about: "fixities and constraints are eliminated; every builder gives the same answer",
+    about: "fixities and constraints are eliminated; results do not depend on the builder",
     build: BuilderAction::Direct,
 }

@@ -33,12 +33,12 @@ pub(super) fn fact(refused: NotCondensable, dof_name: DofNames<'_>) -> String {
     let name = |equation| dof_name(equation).map_or_else(|| format!("equation {equation}"), |it| it.to_string());
     match refused {
         NotCondensable::OffNode { multiplier, equation, share } => format!(
-            "{} acts on {} by {share:.1e} of what it does on its own node, so that multipliers cannot be condensed",
+            "{} acts on {} by {share:.1e} of its effect on its own node, so that multipliers cannot be condensed",
             name(multiplier),
             name(equation)
         ),
         NotCondensable::Undetermined { multiplier, share } => format!(
-            "the free unknowns of its node see {share:.1e} of {}, so that multipliers cannot be condensed",
+            "the free unknowns of its node have {share:.1e} of the effect of {}, so that multipliers cannot be condensed",
             name(multiplier)
         ),
     }

@@ -213,7 +213,7 @@ register! { LinearSolverEntry "sparse_lu",
     build: direct,
 }
 register! { LinearSolverEntry "automatic",
-    about: "what is fastest: factorisation of small systems, multigrid for big ones",
+    about: "the fastest one: factorisation of small systems, multigrid for large ones",
     build: automatic,
 }
 register! { LinearSolverEntry "amgcl",

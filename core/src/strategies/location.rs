@@ -2,14 +2,15 @@
 
 use zelus_linear_algebra::parallel;
 
+use crate::diagnostics::{coordinates, counted};
 use crate::geometry::mapping::is_inverted;
 use crate::model::{ModelPart, SubPart};
 
 /// Place of a node in the initial mesh and the smallest part with elements that holds it: " at (x, y, z) of part Body".
 pub(crate) fn location(part: &ModelPart, node: u32) -> String {
-    let [x, y, z] = part.nodes.initial[node as usize];
+    let place = coordinates(part.nodes.initial[node as usize]);
     let of = body_of(&part.tree, node).map_or(String::new(), |name| format!(" of part {name}"));
-    format!(" at ({x}, {y}, {z}){of}")
+    format!(" at {place}{of}")
 }
 
 /// The smallest part with elements that holds a node.
@@ -41,7 +42,8 @@ pub(super) fn inside_out(part: &ModelPart) -> Option<String> {
     let found: Vec<u32> = parallel::select(elements.len(), 1024, is_so);
     let said = found.first().map(|&at| {
         let (kind, id, node) = (elements.kinds[at as usize].name, elements.ids[at as usize], elements.nodes(at)[0]);
-        format!("{} elements are inside out, the first is {kind} {id}{}", found.len(), location(part, node))
+        let elements = counted(found.len(), "element is", "elements are");
+        format!("{elements} inside out, the first is {kind} {id}{}", location(part, node))
     });
     part.ranks.first_to_say(said)
 }

@@ -1,4 +1,4 @@
-//! Newton's iteration that goes on once where it has not converged.
+//! Newton's iteration that continues once where it has not converged.
 
 use zelus_core::assembly::{Assembler, System};
 use zelus_core::diagnostics::Diagnostic;
@@ -47,6 +47,6 @@ impl SolutionStrategy for Patient {
 }
 
 register! { StrategyEntry "patient_newton",
-    about: "Newton's iteration that goes on once where it has not converged",
+    about: "Newton's iteration that continues once where it has not converged",
     build: |request| Ok(Box::new(Patient(request.newton()?))),
 }

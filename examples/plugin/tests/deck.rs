@@ -95,7 +95,7 @@ fn the_additions_are_described_like_the_rest() {
         ("energy_criterion", "work of the residual"),
         ("continued", "the increment of the last one"),
         ("Continued", "root model part"),
-        ("patient_newton", "goes on once"),
+        ("patient_newton", "continues once"),
         ("refining", "corrected once"),
         ("gauss", "elimination"),
         ("jacobi", "inverse of the diagonal"),

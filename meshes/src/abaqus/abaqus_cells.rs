@@ -67,18 +67,18 @@ pub(super) fn left_out(name: &str, shape: Shape) -> Option<(&'static str, &'stat
     if letters.contains('H') {
         return Some((
             "a pressure of their own",
-            "take SmallDisplacementMixedVolumetricStrainElement as \"element_name\" for what is nearly incompressible",
+            "take SmallDisplacementMixedVolumetricStrainElement as \"element_name\" for nearly incompressible materials",
         ));
     }
     if is_block && letters.contains('I') {
         return Some((
             "incompatible modes: bent, they are stiffer here",
-            "mesh what bends with elements of second order, or finer",
+            "mesh parts under bending with elements of second order, or finer",
         ));
     }
     (is_block && letters.contains('R')).then_some((
         "one integration point: integrated in full, they are stiffer here",
-        "mesh what bends with elements of second order, or finer",
+        "mesh parts under bending with elements of second order, or finer",
     ))
 }
 

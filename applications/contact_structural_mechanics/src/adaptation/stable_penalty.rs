@@ -65,15 +65,16 @@ impl StablePenalty {
 }
 
 fn warn(step: f64, penalty: f64, most: f64) -> Diagnostic {
-    let fact = format!("steps of {step:.3e} carry a penalty of {most:.3e} at most, and it is {penalty:.3e}");
+    let fact = format!("steps of {step:.3e} are stable up to a penalty of {most:.3e}, and it is {penalty:.3e}");
     Diagnostic::warning("contact-step", fact).remedy(
         "the motion can grow without bound while there is contact: shorten \"time_step\", or leave the penalty to the estimate",
     )
 }
 
 fn note(step: f64, penalty: f64, most: f64) -> Diagnostic {
-    let fact =
-        format!("the penalty is lowered from {penalty:.3e} to {most:.3e}, which is what steps of {step:.3e} carry");
+    let fact = format!(
+        "the penalty is lowered from {penalty:.3e} to {most:.3e}, the largest stable one for steps of {step:.3e}"
+    );
     Diagnostic::note("contact-step", fact)
 }
 

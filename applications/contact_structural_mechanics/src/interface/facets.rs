@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::FxHashMap;
 use zelus_core::Result;
-use zelus_core::diagnostics::{Diagnostic, Report, unfit};
+use zelus_core::diagnostics::{Diagnostic, Report, counted, unfit};
 use zelus_core::geometry::mapping::{domain_size, unit_normal};
 use zelus_core::geometry::{Shape, reversed};
 use zelus_core::model::flags::INTERFACE;
@@ -285,8 +285,8 @@ fn shared(part: &ModelPart, interfaces: &[Interface]) -> Vec<Diagnostic> {
         let ids: Vec<String> = both.iter().take(NAMED).map(|&node| part.nodes.ids[node as usize].to_string()).collect();
         let more = if both.len() > NAMED { ", …" } else { "" };
         let fact = format!(
-            "{} nodes are on both sides of pair \"{}\": {}{more}; there the bodies are one and cannot part",
-            both.len(),
+            "{} on both sides of pair \"{}\": {}{more}; the bodies are connected there and cannot separate",
+            counted(both.len(), "node is", "nodes are"),
             interface.key,
             ids.join(", ")
         );

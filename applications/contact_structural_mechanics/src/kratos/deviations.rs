@@ -32,13 +32,13 @@ pub const DEVIATIONS: &[Deviation] = &[
         of: PROCESSES,
         key: "normal_variation",
         kratos: "normals are those after the first iteration of a step, whose tangent leaves a part out",
-        here: "normals of each iteration with their whole derivative: the answer does not depend on iterates",
+        here: "normals of each iteration with their whole derivative: results do not depend on iterates",
         source: "alm_contact_process.py, mortar_contact_condition.cpp",
     },
     Deviation {
         of: &[ALM],
         key: "augmentation",
-        kratos: "gaps of single pairs augment forces: a little of the penalty stays in the answer",
+        kratos: "gaps of single pairs augment forces: results depend a little on the penalty",
         here: "the gap of the whole node decides, forces are multipliers alone",
         source: "ALM_frictionless_mortar_contact_condition.cpp",
     },
@@ -137,7 +137,7 @@ pub const DEVIATIONS: &[Deviation] = &[
         of: &[PENALTY, EXPLICIT],
         key: "advance_ALM_parameters.penalty_of_weighted_gaps",
         kratos: "penalties act pair by pair on weighted gaps, and hold an area that no deck names",
-        here: "they act on the gap of a node: no size, unit or mesh changes the answer",
+        here: "they act on the gap of a node: results do not depend on size, unit and mesh",
         source: "penalty_frictionless_mortar_contact_condition.cpp",
     },
     Deviation {
@@ -179,7 +179,7 @@ pub const DEVIATIONS: &[Deviation] = &[
         of: &[SOLVER],
         key: "edge_normals",
         kratos: "slave nodes on sharp edges have the mean normal of their faces",
-        here: "they take that of what they meet",
+        here: "they have the normal of the opposite surface",
         source: "normal_calculation_utils.cpp",
     },
     Deviation {

@@ -15,7 +15,7 @@ pub fn updates_each_iteration(info: &ProcessInfo) -> bool {
 }
 
 register! { SolverExtensionEntry "mpc_contact_settings",
-    about: "what the solver needs to know of contact by constraints",
+    about: "settings of contact by constraints at the solver",
     defaults: include_str!("../../../../configs/solvers/mpc_contact_settings.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/mpc_contact_settings.json"))],
     build: ExtensionDefinition {

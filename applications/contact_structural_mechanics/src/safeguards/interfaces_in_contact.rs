@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
-use zelus_core::diagnostics::Diagnostic;
+use zelus_core::diagnostics::{Diagnostic, coordinates, counted};
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{norm, sub};
 
@@ -61,19 +61,13 @@ impl InterfacesInContact {
                 }
             }
         }
-        let [x, y] = [nearest.0, nearest.1].map(|node| part.nodes.initial[node as usize]);
+        let [slave, master] = [nearest.0, nearest.1].map(|node| {
+            format!("{} at {}", part.nodes.ids[node as usize], coordinates(part.nodes.initial[node as usize]))
+        });
         let fact = format!(
-            "contact pair {} never met in {} steps: its nearest nodes are {} at ({}, {}, {}) and {} at ({}, {}, {}), {:.3e} apart at the end, where the mesh size is {:.3e}",
+            "contact pair {} never met in {}: its nearest nodes are {slave} and {master}, {:.3e} apart at the end, where the mesh size is {:.3e}",
             name(&interface.key, parts),
-            self.steps,
-            part.nodes.ids[nearest.0 as usize],
-            x[0],
-            x[1],
-            x[2],
-            part.nodes.ids[nearest.1 as usize],
-            y[0],
-            y[1],
-            y[2],
+            counted(self.steps, "step", "steps"),
             distance(nearest.0, nearest.1),
             part.nodes.values.values(&NODAL_H, 0)[nearest.0 as usize]
         );

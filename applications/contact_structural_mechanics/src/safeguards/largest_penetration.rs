@@ -1,5 +1,6 @@
 //! Slave nodes in contact that lie too deep in the master.
 
+use zelus_core::diagnostics::{coordinates, counted};
 use zelus_core::model::ModelPart;
 
 use crate::slave_nodes::SlaveStates;
@@ -18,10 +19,10 @@ pub(crate) fn too_deep(part: &ModelPart, states: &SlaveStates, most: f64, least:
     let depths = depths.map(|(slave, state)| (states.mesh_node(slave), -state.gap().unwrap_or(0.0)));
     let deep: Vec<(u32, f64)> = depths.filter(|&(node, depth)| depth > least && share(node, depth) > most).collect();
     let (node, depth) = deep.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)))?;
-    let [x, y, z] = part.nodes.initial[node as usize];
+    let nodes = counted(deep.len(), "slave node in contact is", "slave nodes in contact are");
+    let place = coordinates(part.nodes.initial[node as usize]);
     Some(format!(
-        "{} slave nodes in contact are inside the master by more than {most} of their mesh size, node {} at ({x}, {y}, {z}) by {depth:.3e} ({:.2} of it): raise the penalty (\"stiffness_factor\" of \"advance_ALM_parameters\", or a manual \"penalty\"), use alm_contact_process, or allow more by \"largest_penetration\" in \"contact_settings\"",
-        deep.len(),
+        "{nodes} inside the master by more than {most} of their mesh size, node {} at {place} by {depth:.3e} ({:.2} of it): raise the penalty (\"stiffness_factor\" of \"advance_ALM_parameters\", or a manual \"penalty\"), use alm_contact_process, or allow more by \"largest_penetration\" in \"contact_settings\"",
         part.nodes.ids[node as usize],
         share(node, depth)
     ))

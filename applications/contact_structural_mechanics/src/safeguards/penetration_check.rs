@@ -1,5 +1,6 @@
 //! Bodies in each other that contact does not see: faces that no pair names, or bodies that pass each other within a step.
 
+use zelus_core::diagnostics::{coordinates, counted};
 use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
@@ -82,14 +83,11 @@ fn buried(part: &ModelPart, not_in_contact: &[&Interface], most: f64) -> Option<
     let is_deep = |at: &usize| found[3 * at..3 * at + 3].iter().all(|found| *found);
     let deep: Vec<u32> = (0..normals.len()).filter(is_deep).map(|at| normals[at].0).collect();
     let first = *deep.first()?;
-    let x = part.nodes.initial[first as usize];
+    let nodes = counted(deep.len(), "of its nodes is", "of its nodes are");
     Some(format!(
-        "no node of the contact pair is in contact, and {} of its nodes are inside a body by more than {most} of their mesh size, the first is node {} at ({}, {}, {}): a shorter \"time_step\" may let contact see it; name the faces that meet in \"contact_model_part\", move bodies apart that begin in each other, or allow it by \"largest_penetration\": 0 in \"contact_settings\"",
-        deep.len(),
+        "no node of the contact pair is in contact, and {nodes} inside a body by more than {most} of their mesh size, the first is node {} at {}: a shorter \"time_step\" may let contact see it; name the faces that meet in \"contact_model_part\", move bodies apart that begin in each other, or allow it by \"largest_penetration\": 0 in \"contact_settings\"",
         part.nodes.ids[first as usize],
-        x[0],
-        x[1],
-        x[2]
+        coordinates(part.nodes.initial[first as usize])
     ))
 }
 
@@ -142,11 +140,9 @@ fn passed(part: &ModelPart, interface: &Interface, most: f64) -> Option<String> 
     };
     let nodes: Vec<u32> = interface.nodes_of(Roles::Slave).into_iter().filter(through).collect();
     let first = *nodes.first()?;
-    let (id, [x, y, z]) = (part.nodes.ids[first as usize], part.nodes.initial[first as usize]);
-    let count = nodes.len();
-    Some(format!(
-        "{count} slave nodes go through the master within the step, the first is node {id} at ({x}, {y}, {z})"
-    ))
+    let count = counted(nodes.len(), "slave node goes", "slave nodes go");
+    let (id, place) = (part.nodes.ids[first as usize], coordinates(part.nodes.initial[first as usize]));
+    Some(format!("{count} through the master within the step, the first is node {id} at {place}"))
 }
 
 fn along(from: [f64; 3], to: [f64; 3], share: f64) -> [f64; 3] {

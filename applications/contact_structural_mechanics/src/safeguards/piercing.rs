@@ -1,5 +1,6 @@
 //! Corners and edges of masters that stick into slave facets, between the slave nodes.
 
+use zelus_core::diagnostics::coordinates;
 use zelus_core::geometry::mapping::{local_coordinates, position};
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, sub};
@@ -67,10 +68,10 @@ fn depth(part: &ModelPart, facet: &Facet, x: [f64; 3]) -> Option<f64> {
 }
 
 fn said(part: &ModelPart, node: u32, depth: f64, facet: &[u32]) -> String {
-    let [x, y, z] = part.nodes.initial[node as usize];
+    let place = coordinates(part.nodes.initial[node as usize]);
     let around: Vec<String> = facet.iter().map(|&node| part.nodes.ids[node as usize].to_string()).collect();
     format!(
-        "node {} at ({x}, {y}, {z}), at an edge of a master, is {depth:.3e} inside the slave facet of nodes {}, which do not see it: name the side with the edge in \"assume_master_slave\", or give the slave a finer mesh",
+        "node {} at {place}, at an edge of a master, is {depth:.3e} inside the slave facet of nodes {}, whose gaps do not detect it: name the side with the edge in \"assume_master_slave\", or give the slave a finer mesh",
         part.nodes.ids[node as usize],
         around.join(", ")
     )

@@ -1,10 +1,11 @@
 //! Warnings of overlaps beyond the search radius, and of pairs found too late.
 
-use zelus_core::diagnostics::Diagnostic;
+use zelus_core::diagnostics::{Diagnostic, counted};
 
 /// The warning that the deck's search radius leaves out overlaps: nothing acts there.
 pub fn warn_of_search_radius(lost: usize) -> Diagnostic {
-    let fact = format!("{lost} pairs of facets overlap but lie beyond the reach of the search; contact has gaps there");
+    let pairs = counted(lost, "pair of facets overlaps", "pairs of facets overlap");
+    let fact = format!("{pairs} beyond the search radius; contact has gaps there");
     Diagnostic::warning("search-reach", fact)
         .remedy("set \"search_parameters.search_distance\" to \"between_facets\", or raise \"search_factor\"")
 }

@@ -1,6 +1,6 @@
 //! How the sides of contact lie to each other before anything runs: nodes inside other bodies, and moving them out without strain.
 
-use zelus_core::diagnostics::Diagnostic;
+use zelus_core::diagnostics::{Diagnostic, coordinates, counted};
 use zelus_core::model::ModelPart;
 use zelus_core::parallel;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
@@ -81,23 +81,19 @@ fn penetration(part: &ModelPart, places: &[StartingNode], name: &str, refuses: b
     let deep: Vec<&StartingNode> =
         deep.into_iter().zip(inside).filter_map(|(at, inside)| inside.then_some(at)).collect();
     let deepest = deep.iter().min_by(|a, b| a.distance.total_cmp(&b.distance).then(a.node.cmp(&b.node)))?;
-    let x = part.nodes.initial[deepest.node as usize];
     let fact = format!(
-        "contact pair {name}: {} slave nodes lie inside the other body before the first step, node {} at ({}, {}, {}) deepest, by {:.3e}: \
-         {:.2} of its mesh size",
-        deep.len(),
+        "contact pair {name}: {} inside the other body before the first step, node {} at {} deepest, by {:.3e}: {:.2} of its mesh size",
+        counted(deep.len(), "slave node lies", "slave nodes lie"),
         part.nodes.ids[deepest.node as usize],
-        x[0],
-        x[1],
-        x[2],
+        coordinates(part.nodes.initial[deepest.node as usize]),
         -deepest.distance,
         -deepest.distance / deepest.size
     );
     let is_lost = refuses && -deepest.distance > deepest.size;
     let make = if is_lost { Diagnostic::error } else { Diagnostic::warning };
     let remedy = if -deepest.distance > deepest.size {
-        "move the bodies apart in the mesh: what lies in another body by more than an element may stay there, unseen by contact; \
-         \"largest_penetration\": 0 in \"contact_settings\" lets it run all the same"
+        "move the bodies apart in the mesh: contact may not detect nodes that are deeper than an element; \"largest_penetration\": 0 in \
+         \"contact_settings\" allows the run"
     } else {
         "the first step pushes them out, which strains the bodies: leave it where a press fit is meant, else set \
          \"adjust_initial\": true in \"contact_settings\", or mend the mesh"
@@ -126,8 +122,8 @@ fn one_body(
         return None;
     }
     let through = places.iter().find(|at| at.distance < -at.size).map(|at| {
-        let [x, y, z] = part.nodes.initial[at.node as usize];
-        format!("; node {} at ({x}, {y}, {z}) faces the master through it", part.nodes.ids[at.node as usize])
+        let place = coordinates(part.nodes.initial[at.node as usize]);
+        format!("; node {} at {place} faces the master through it", part.nodes.ids[at.node as usize])
     });
     let make = if refuses && through.is_some() { Diagnostic::error } else { Diagnostic::warning };
     let fact = format!(
@@ -150,7 +146,7 @@ fn adjust(part: &mut ModelPart, places: &[StartingNode], name: &str, tolerance: 
     let farthest = moved.iter().max_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()))?;
     let [inside, gaps] = [true, false].map(|is| moved.iter().filter(|at| (at.distance < 0.0) == is).count());
     let fact = format!(
-        "contact pair {name}: {inside} slave nodes inside the master and {gaps} before it are moved onto it without strain, node {} \
+        "contact pair {name}: slave nodes are moved onto the master without strain, {inside} from inside it and {gaps} across a gap, node {} \
          farthest, by {:.3e}",
         part.nodes.ids[farthest.node as usize],
         farthest.distance.abs()

@@ -77,7 +77,7 @@ impl ContactSolverSettings {
 }
 
 register! { SolverExtensionEntry "contact_settings",
-    about: "what the solver needs to know of contact",
+    about: "settings of contact at the solver",
     defaults: include_str!("../../../../configs/solvers/contact_settings.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/contact_settings.json"))],
     build: ExtensionDefinition {

@@ -157,7 +157,7 @@ explicit! { "QSConvectionDiffusionExplicit", QuasiStatic,
 "R = ∫ N (Q − ρc v·∇T) − k ∇N·∇T + ρc (v·∇N) s, s = τ (r + ρc π)" }
 
 explicit! { "DConvectionDiffusionExplicit", Dynamic,
-"heat in explicit steps, stored at the nodes; stabilised by subscales that go on in time",
+"heat in explicit steps, stored at the nodes; stabilised by subscales that evolve in time",
 "R = ∫ N (Q − ρc (v·∇T + ∂s/∂t)) − k ∇N·∇T + ρc (v·∇N) s, ρc ∂s/∂t + s/τ = r + ρc π" }
 
 on_shapes! { all, place; "Element" }

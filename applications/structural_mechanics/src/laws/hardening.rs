@@ -58,7 +58,7 @@ impl Hardening {
                 let remedy = "use 3 (constant), 4 (polynomial) or 6 (points), or ISOTROPIC_HARDENING_MODULUS instead";
                 let fact = if matches!(curve, 0.0 | 1.0 | 2.0 | 5.0) {
                     format!(
-                        "HARDENING_CURVE {curve} softens: its answer depends on the mesh; it is not there. In Variables"
+                        "HARDENING_CURVE {curve} softens, so that results depend on the mesh; it is not available. In Variables"
                     )
                 } else {
                     format!("HARDENING_CURVE {curve} is unknown. In Variables")

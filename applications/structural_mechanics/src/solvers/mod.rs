@@ -43,7 +43,7 @@ pub fn adopt(settings: &Settings, part: &mut ModelPart, _report: &mut Report) ->
 /// Names the spellings of older decks.
 pub fn adapt(defaults: Defaults) -> Defaults {
     const WHOLE: &str = "the whole root part is computed";
-    const BUILDER: &str = "every builder gives the same answer";
+    const BUILDER: &str = "results do not depend on the builder";
     defaults
         .require(&["model_part_name", "domain_size", "time_stepping", "model_import_settings"])
         .dropped("problem_domain_sub_model_part_list", WHOLE)

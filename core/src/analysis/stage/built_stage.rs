@@ -19,7 +19,7 @@ use super::schedule::Schedule;
 use super::shared_stage::SharedStage;
 use crate::assembly::System;
 use crate::communication::Ranks;
-use crate::diagnostics::{Diagnostic, Report, Result};
+use crate::diagnostics::{Diagnostic, Report, Result, counted};
 use crate::entities::Interaction;
 use crate::io::{FileUse, Mark, check_files};
 use crate::model::{Model, ModelPart};
@@ -186,7 +186,10 @@ fn warn_of_unreferenced_nodes(part: &ModelPart, system: &System, problems: &mut 
         problems.push(
             Diagnostic::warning(
                 "unreferenced-node",
-                format!("{} nodes belong to no element, the first is node {first}", unreferenced.len()),
+                format!(
+                    "{} to no element, the first is node {first}",
+                    counted(unreferenced.len(), "node belongs", "nodes belong")
+                ),
             )
             .remedy("they are left where they are; remove them from the mesh if that is not meant"),
         );

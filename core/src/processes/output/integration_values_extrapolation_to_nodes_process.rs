@@ -68,7 +68,7 @@ impl Process for Extrapolation {
 
 register! { ProcessEntry "integration_values_extrapolation_to_nodes_process",
     aliases: &["IntegrationValuesExtrapolationToNodesProcess"],
-    about: "gives the nodes what elements have at their Gauss points, averaged over the elements around a node",
+    about: "extrapolates results at Gauss points to nodes, averaged over the elements around a node",
     source: "v_i = Σ w J |N_i| v / Σ w J |N_i|",
     defaults: include_str!(concat!(
         env!("CARGO_MANIFEST_DIR"),

@@ -9,7 +9,7 @@ use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 use super::part_path::{PartPath, one_of};
 use super::quantity::Quantity;
 use crate::assembly::System;
-use crate::diagnostics::{Diagnostic, Error, Place, Result};
+use crate::diagnostics::{Diagnostic, Error, Place, Result, coordinates};
 use crate::geometry::{mapping, shape_functions};
 use crate::io::{FileUse, Mark, append_to_file, cut_file, length_of, replace_file};
 use crate::model::{EntityRole, Model, ModelPart, SubPart};
@@ -205,9 +205,8 @@ impl Process for PointsOutput {
         let (part, selection) = self.part.find(model)?;
         let find = |point: &OutputPoint| {
             self.find(part, selection, point.position).ok_or_else(|| {
-                let [x, y, z] = point.position;
-                let fact =
-                    format!("no {} of {:?} holds the point ({x}, {y}, {z})", ENTITIES[self.entity], self.part.path);
+                let place = coordinates(point.position);
+                let fact = format!("no {} of {:?} holds the point {place}", ENTITIES[self.entity], self.part.path);
                 let remedy = "move the point into the part, or enlarge \"search_tolerance\"";
                 Error::from(Diagnostic::error("point-outside", fact).at(self.place.clone()).remedy(remedy))
             })

@@ -164,7 +164,7 @@ impl Process for SaveRestart {
 
 register! { ProcessEntry "save_restart_process",
     aliases: &["SaveRestartProcess"],
-    about: "saves the whole run, so that it can go on with the same bits",
+    about: "saves the whole run, for a bitwise identical restart",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/save_restart_process.json")),
     build: build,
 }

@@ -22,7 +22,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
     /// Why elements of this material have no traction that depends on displacements alone; `None` where they have.
     pub(super) fn unknown_tractions(material: &Material<S>) -> Option<&'static str> {
         if material.law.history() > 0 {
-            Some("its law remembers what happened at Gauss points, and faces have none")
+            Some("its law has a history at Gauss points, and faces have none")
         } else if material.law.expands() {
             Some("its law depends on the temperature")
         } else if F::CONSTANT_PRESSURE {
