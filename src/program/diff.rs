@@ -18,10 +18,10 @@ pub(super) struct DiffArguments {
     first: PathBuf,
     /// Results to compare with the first.
     second: PathBuf,
-    /// Difference up to which numbers are equal, by the largest number of the field over all steps.
+    /// Largest difference of equal numbers, relative to the largest value of the field over all steps.
     #[arg(long, default_value_t = 0.0)]
     tolerance: f64,
-    /// Difference up to which numbers are equal whatever their size.
+    /// Largest difference of equal numbers, in the unit of the field.
     #[arg(long, default_value_t = 0.0)]
     absolute: f64,
 }

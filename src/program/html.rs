@@ -25,7 +25,7 @@ const MARK: &str = "<!doctype html>\n<!-- zelus report -->";
 pub(super) struct ReportArguments {
     /// The report of a run (`zelus run DECK --report run.json`).
     report: PathBuf,
-    /// The page.
+    /// The HTML page to write.
     #[arg(short, long, default_value = "report.html")]
     output: PathBuf,
 }

@@ -17,7 +17,7 @@ use super::say::say;
 pub(super) struct Import {
     /// The mesh, e.g. part.msh, part.inp or part.vtu.
     file: PathBuf,
-    /// The mesh file to write; beside the other, with the ending .mdpa, when not given.
+    /// The mesh file to write; by default beside the input, with the ending .mdpa.
     #[arg(short, long)]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -29,7 +29,7 @@ pub(super) struct Import {
 pub(super) struct Convert {
     /// The mesh to read, or the results (.pvd) of a run.
     from: PathBuf,
-    /// The mesh to write; its ending says in which format. The results of all steps go into a file that ends in .vtkhdf, or in .xdmf
+    /// The mesh to write; its ending selects the format. The results of all steps go into a file that ends in .vtkhdf, or in .xdmf
     /// with its numbers in one that ends in .h5.
     to: PathBuf,
     #[command(flatten)]

@@ -47,8 +47,8 @@ use terminal::{Level, Terminal};
     version,
     about,
     after_help = "Exit codes: 0 done and converged, 1 results differ (diff), 2 bad input, 3 not converged \
-    (what converged is written), 4 system or solver failure, 5 stopped by a signal after a step and saved \
-    (go on with --resume)."
+    (converged steps are written), 4 system or solver failure, 5 stopped by a signal after a step and saved \
+    (continue with --resume)."
 )]
 struct CommandLine {
     #[command(subcommand)]
@@ -57,16 +57,16 @@ struct CommandLine {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Run a deck.
+    /// Run a deck: the problem of ProjectParameters.json.
     Run(run_arguments::RunArguments),
-    /// Check everything about a deck that can be known without solving.
+    /// Check a deck without solving it: files, settings, objects and model.
     Check {
         /// The deck, e.g. ProjectParameters.json.
         file: PathBuf,
         /// Use the defaults of this program where the deck gives none, e.g. kratos.
         #[arg(long, value_name = "PROGRAM")]
         like: Option<String>,
-        /// Take a value in place of the deck's, e.g. solver_settings.max_iteration=20; may be given several times.
+        /// Replace a value of the deck, e.g. solver_settings.max_iteration=20; may be given several times.
         #[arg(long, value_name = "KEY=VALUE")]
         set: Vec<String>,
         /// Format of problems: text, or one JSON object with severity, code, place, fact and remedy of each.
@@ -77,20 +77,20 @@ enum Command {
     Import(meshes::Import),
     /// Read a mesh and write it in the format of its new name's ending: .mdpa, .msh, .inp, .vtu.
     Convert(meshes::Convert),
-    /// Write a commented deck to start from: parts, materials, supports and pairs in contact, of a mesh.
+    /// Write a commented deck for a mesh, to start from: parts, materials, supports and contact pairs.
     New(starter::NewArguments),
-    /// Cut the mesh of a deck for several ranks, and print the share, neighbours and traffic of each.
+    /// Partition the mesh of a deck for several ranks, and print the share, neighbours and communication of each.
     Partition(partition::PartitionArguments),
-    /// Compare two result sets by node and field; exit code 0 where they are equal, 1 where not.
+    /// Compare two result sets by node and field; exit code 0 if they are equal, 1 if not.
     Diff(diff::DiffArguments),
-    /// Write a page about a run: convergence, contact, forces, energies, times, warnings, and the mesh to turn and zoom.
+    /// Write a page about a run: convergence, contact, forces, energies, times, warnings, and the mesh, to rotate and zoom.
     Report(html::ReportArguments),
-    /// List the registered names, of all kinds or of one.
+    /// List the names that a deck may use, of all kinds or of one.
     List {
         /// A kind, e.g. process or condition.
         kind: Option<String>,
     },
-    /// Print the JSON Schema of decks or of materials, by which editors complete and check them.
+    /// Print the JSON Schema of decks or of materials files, for completion and checks in editors.
     Schema {
         /// Kind of file that the schema describes.
         #[arg(value_enum, default_value_t = schema::Of::Deck)]
@@ -103,7 +103,7 @@ enum Command {
     },
     /// Print the manual page: zelus manual > zelus.1.
     Manual,
-    /// Describe a registered name: settings with defaults, and source.
+    /// Describe a name of decks: meaning, settings with defaults, example, source file.
     Describe {
         /// The name, as a deck would write it.
         name: String,
@@ -217,7 +217,7 @@ fn explain(error: &Error, ran: bool) -> String {
         Error::Input(problems) => {
             let errors = problems.iter().filter(|p| p.severity == zelus_core::diagnostics::Severity::Error).count();
             let s = if errors == 1 { "" } else { "s" };
-            let done = if ran { "what ran before is written" } else { "nothing was run" };
+            let done = if ran { "results of the steps before it are written" } else { "nothing was run" };
             format!("{error}\n\n{errors} error{s} in the input; {done}")
         }
         Error::NotConverged(_) => format!("error[not-converged] {error}"),

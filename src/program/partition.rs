@@ -25,13 +25,13 @@ pub(super) struct PartitionArguments {
     /// Number of ranks.
     #[arg(short = 'n', long = "ranks")]
     ranks: usize,
-    /// A line for every rank, however many.
+    /// Print a line for every rank, however many.
     #[arg(long)]
     all: bool,
-    /// Newton iterations a step, for messages and bytes.
+    /// Newton iterations of a step, to estimate messages and bytes.
     #[arg(long, default_value_t = Repeats::default().newton)]
     newton: usize,
-    /// Krylov iterations a solve, for messages and bytes.
+    /// Krylov iterations of a solve, to estimate messages and bytes.
     #[arg(long, default_value_t = Repeats::default().krylov)]
     krylov: usize,
     /// Write ranks of elements, conditions and nodes by id, and all counts, to this JSON file.

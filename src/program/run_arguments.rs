@@ -7,7 +7,7 @@ use std::path::PathBuf;
 pub(super) struct RunArguments {
     /// The deck, e.g. ProjectParameters.json.
     pub file: PathBuf,
-    /// Threads; all of the machine when not given. Results do not depend on it.
+    /// Number of threads; by default all of the machine. Results do not depend on it.
     #[arg(long)]
     pub threads: Option<usize>,
     /// Write the report of the run (sizes, iterations, contact state, timings, warnings) to this JSON file.
@@ -16,20 +16,20 @@ pub(super) struct RunArguments {
     /// Use the defaults of this program where the deck gives none, e.g. kratos.
     #[arg(long, value_name = "PROGRAM")]
     pub like: Option<String>,
-    /// Take a value in place of the deck's, e.g. solver_settings.max_iteration=20; may be given several times.
+    /// Replace a value of the deck, e.g. solver_settings.max_iteration=20; may be given several times.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Write results below this folder, not beside the deck; it is made where it is not there.
+    /// Write results below this folder, not beside the deck; it is created if it does not exist.
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
-    /// Run the deck once for each row of this table (CSV): its first row names keys as --set does, each other gives their values.
+    /// Parametric study: run the deck once for each row of this table (CSV). Its first row names keys as --set does, other rows give values.
     #[arg(long, value_name = "TABLE")]
     pub sweep: Option<PathBuf>,
-    /// Rows of the sweep that run at a time, which share the cores; as many as there are cores when not given.
+    /// Rows of the sweep that run at the same time and share the cores; by default as many as there are cores.
     #[arg(short, long, value_name = "N", requires = "sweep")]
     pub jobs: Option<usize>,
-    /// Restart from the latest saved run of the deck, bitwise identical to a run that was not stopped; from the beginning
-    /// where none was saved. For a sweep, run the rows that are not done.
+    /// Restart from the latest saved run of the deck, bitwise identical to an uninterrupted run; from the beginning if none
+    /// was saved. With --sweep, run the rows that are not done.
     #[arg(long)]
     pub resume: bool,
     /// Print warnings and errors only.

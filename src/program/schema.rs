@@ -78,7 +78,7 @@ fn deck() -> Result<Value> {
         }
     }
     definitions.insert("solver_settings".to_owned(), solver_settings());
-    let mut linear = json!({ "type": "object", "description": "The linear solver; empty for what is fastest." });
+    let mut linear = json!({ "type": "object", "description": "The linear solver; empty for automatic choice." });
     linear["properties"]["solver_type"] = named("linear_solver", "");
     let own = choices("solver_type", "linear_solver", |then| then);
     if !own.is_empty() {

@@ -33,7 +33,7 @@ pub(super) struct NewArguments {
     /// The mesh, e.g. part.msh, part.inp, part.vtu or part.mdpa.
     #[arg(long, value_name = "MESH")]
     from: PathBuf,
-    /// The folder of the deck; that of the name of the mesh when not given. No file in it is replaced.
+    /// The folder of the deck; by default named after the mesh. No file in it is replaced.
     #[arg(short, long)]
     output: Option<PathBuf>,
     /// The format of the mesh, whatever its ending.
@@ -98,7 +98,7 @@ fn put(path: &Path, text: &str) -> Result<()> {
     replace_own_file(path, |file| file.write_all(text.as_bytes()))
 }
 
-/// Takes elements that do not lock where a material of the mesh hardly changes its volume; whether it did. Those of second order stay,
+/// Takes elements that do not lock where a material of the mesh hardly changes its volume; whether it did. Elements of second order stay,
 /// and rings and plane stress have none.
 fn take_mixed_elements(mesh: &Mesh, document: &mut MdpaDocument) -> bool {
     let is_near_half = |material: &Material| material.young.is_some() && material.poisson > LOCKS;
