@@ -6,10 +6,11 @@ Usage: scripts/check_words.py [--self-test] [--list KIND]
 Kinds of findings, each printed as "file:line: fact; remedy":
 
   banned    a phrase of the list in scripts/words.txt: in documents, comments, docstrings, string literals of Rust
-  opening   a sentence of a comment or a document that opens with What, Whose, Of which or That which
+  opening   a sentence of a comment or a document that opens with What, Whose, Of which or That which; a comment that opens with Those
   length    a sentence of a document with more words than scripts/words.txt allows
   link      a link between documents, or to a heading, that leads nowhere
-  index     a term that the index of terms promises and no linked page contains
+  index     a term that the index of terms promises and no linked page contains, a standard term that it lacks, a page of the
+            documentation that no link from its first page leads to
   spelling  a word that codespell or typos would correct, where one of them is installed
   exception an exception of scripts/words.txt that nothing needs any more
 
@@ -19,6 +20,7 @@ Quotations (text between “ ” or backticks, code blocks, block quotes) are le
 import argparse
 import bisect
 import io
+import os
 import re
 import shutil
 import subprocess
@@ -31,6 +33,8 @@ from pathlib import Path
 SKIPPED_FOLDERS = {"target", "node_modules", "__pycache__", "book"}
 MOST_EXCEPTIONS = 30
 OPENING = re.compile(r"(?:What|Whose|Of which|That which)\b(?!['’]s\b)")
+# Openings of the first sentence of a comment, which has no noun before it.
+FIRST = re.compile(OPENING.pattern + r"|Those\b")
 # Spaces after a full stop end a sentence, except after these.
 ABBREVIATIONS = re.compile(
     r"(?:\b(?:e\.g|i\.e|cf|vs|Fig|Eq|eq|No|pp?|ed|Sect?|Chap|approx|resp|St|Dr|Prof|J|Int|Numer|Meth|Eng|Comput|Thermal)"
@@ -340,7 +344,8 @@ def check_openings(passage):
         return
     text = without_quotations(passage.text)
     for begin, sentence in sentences(text):
-        if OPENING.match(sentence) and not sentence.rstrip().endswith("?"):
+        first = begin == 0 and passage.kind == "comment"
+        if (FIRST if first else OPENING).match(sentence) and not sentence.rstrip().endswith("?"):
             fact = f"a sentence opens with “{' '.join(sentence.split()[:3])}”".replace("\x00", "")
             yield Finding("opening", passage.path, passage.line(begin), fact, "open it with a noun of the field", sentence)
 
@@ -413,12 +418,12 @@ def contains(text, term):
 
 
 def check_index(root, path, terms):
-    """Terms of each row on a page of that row; `terms`, on any page of the index."""
+    """Terms of each row on a page of that row; a row for each of the standard `terms`."""
     index = root / path
     if not index.exists():
         yield Finding("index", path, 1, "there is no index of terms", "add one", "")
         return
-    pages = {}
+    listed = []
     for number, line in enumerate(index.read_text(encoding="utf-8").splitlines(), 1):
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
         if not line.startswith("|") or len(cells) != 2 or "](" not in cells[1]:
@@ -427,15 +432,31 @@ def check_index(root, path, terms):
         for _, page, _ in links(cells[1]):
             target = index.parent / page
             if target.exists():
-                linked.append(pages.setdefault(page, target.read_text(encoding="utf-8")))
+                linked.append(target.read_text(encoding="utf-8"))
+        listed += cells[0].split(", ")
         for term in cells[0].split(", "):
             if not any(contains(text, term) for text in linked):
                 fact = f"no page of this row contains “{term}”"
                 yield Finding("index", path, number, fact, "write the term there, or link another page", term)
     for term in terms:
-        if not any(contains(text, term) for text in pages.values()):
-            fact = f"no page of the index contains the standard term “{term}”"
-            yield Finding("index", path, 1, fact, "add the term to the index and to a page", term)
+        if not any(contains(entry, term) for entry in listed):
+            fact = f"no row of the index has the standard term “{term}”"
+            yield Finding("index", path, 1, fact, "add the term with the page that treats it", term)
+
+
+def check_reach(documents, first):
+    """Pages in the folder of the first page, to which its links must lead; but for mdBook's table of contents."""
+    folder, reached, pending = Path(first).parent, {first}, [first]
+    while pending:
+        path = pending.pop()
+        for _, page, _ in links(documents.get(path, "")):
+            target = Path(os.path.normpath(Path(path).parent / page)).as_posix()
+            if target in documents and target not in reached:
+                reached.add(target)
+                pending.append(target)
+    for path in documents:
+        if folder in Path(path).parents and path not in reached and Path(path).name != "SUMMARY.md":
+            yield Finding("index", path, 1, f"no link from {first} leads to this page", "link it there", "")
 
 
 def has_speller():
@@ -497,7 +518,7 @@ def files(root, ending):
     return sorted(found)
 
 
-def findings(root, rules, rules_path, index="docs/user-guide.md"):
+def findings(root, rules, rules_path, index="docs/user-guide.md", first="docs/README.md"):
     documents = {path: (root / path).read_text(encoding="utf-8") for path in files(root, ".md")}
     sources = files(root, ".rs") + files(root, ".py") + [path for path in files(root, ".json") if path.startswith("configs/")]
     passages_of = {path: document_passages(path, text) for path, text in documents.items()}
@@ -513,6 +534,7 @@ def findings(root, rules, rules_path, index="docs/user-guide.md"):
                 every += check_length(passage, rules.longest)
     every += check_links(root, documents)
     every += check_index(root, index, rules.terms)
+    every += check_reach(documents, first)
     every += check_spelling(passages_of, rules.spelling)
     used, kept = set(), []
     for finding in every:
@@ -546,6 +568,7 @@ See [a page](gone.md), [a heading](#gone), [this one](#what-a-heading-may-say) a
 |---|---|
 | heading, boundary condition | [page](page.md) |
 """,
+    "docs/lost.md": "# A page to which nothing leads\n",
     "configs/object.json": """// An object.
 // What it is for.
 {
@@ -568,6 +591,8 @@ pub const A: &str = "contact finds no rest \\"here\\"";
 /// # Errors
 /// What is no number.
 pub const B: char = '"';
+/// Those of a body. Those of another follow.
+pub const D: char = ' ';
 /// Bodies that find
 /// no rest.
 pub const C: &str = r#"What a "literal" says"#; // Of which this is wrong.
@@ -580,6 +605,7 @@ EXPECTED = {
     ("link", "docs/page.md", 12),
     ("index", "docs/index.md", 5),
     ("index", "docs/index.md", 1),
+    ("index", "docs/lost.md", 1),
     ("opening", "configs/object.json", 2),
     ("banned", "configs/object.json", 5),
     ("opening", "tool.py", 1),
@@ -589,8 +615,9 @@ EXPECTED = {
     ("banned", "src/lib.rs", 4),
     ("opening", "src/lib.rs", 5),
     ("opening", "src/lib.rs", 9),
-    ("banned", "src/lib.rs", 11),
-    ("opening", "src/lib.rs", 13),
+    ("opening", "src/lib.rs", 11),
+    ("banned", "src/lib.rs", 13),
+    ("opening", "src/lib.rs", 15),
     ("exception", "words.txt", 1),
 }
 PLANTED_RULES = """[longest sentence]
@@ -613,7 +640,7 @@ def self_test():
             (root / path).parent.mkdir(exist_ok=True)
             (root / path).write_text(text, encoding="utf-8")
         (root / "words.txt").write_text(PLANTED_RULES, encoding="utf-8")
-        found = findings(root, read_rules(root / "words.txt"), "words.txt", "docs/index.md")
+        found = findings(root, read_rules(root / "words.txt"), "words.txt", "docs/index.md", "docs/index.md")
         kinds = [(f.kind, f.path, f.line) for f in found if f.kind != "spelling"]
     missed, surplus = EXPECTED - set(kinds), set(kinds) - EXPECTED
     for kind, path, line in sorted(missed):

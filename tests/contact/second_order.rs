@@ -70,7 +70,7 @@ fn patch(space: usize, kinds: [Kind; 2], joint: Joint, change: impl FnOnce(&mut 
         (0..3).map(|c| (u[c] - exact[c]).abs()).fold(0.0, f64::max)
     };
     let error = found.chunks(3).zip(&part.nodes.initial).map(off).fold(0.0, f64::max) / strain;
-    // Those of ties are told in a scale of their own.
+    // Multipliers of ties have a scale of their own.
     let scale = run.report().parameters.get("scale factor k").copied();
     let multipliers: Vec<f64> = match joint {
         Joint::Frictionless => run.field("LAGRANGE_MULTIPLIER_CONTACT_PRESSURE").expect("multipliers").to_vec(),

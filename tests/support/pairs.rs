@@ -272,7 +272,7 @@ pub fn system(part: &ModelPart, block: &dyn EntityBlock, request: Request) -> Lo
 }
 
 fn formulations() -> Vec<(&'static str, &'static Formulation)> {
-    // Those that take tractions from elements are walked with elements, in tests/contact/nitsche.rs.
+    // Formulations that take tractions from elements are walked with elements, in tests/contact/nitsche.rs.
     let found = all::<FormulationEntry>().into_iter().map(|entry| (entry.name, &entry.build));
     let found: Vec<_> = found.filter(|(_, formulation)| !matches!(formulation.multiplier, Multiplier::Body)).collect();
     assert!(!found.is_empty(), "no contact formulation is registered");

@@ -52,7 +52,7 @@ struct MissingFactors {
 }
 
 impl MissingFactors {
-    /// Those of the elements that `concerns` chooses by their place and the variable of their body load; collective.
+    /// Properties of the elements that `concerns` chooses by their place and the variable of their body load; collective.
     fn of(part: &ModelPart, concerns: impl Fn(u32, &'static str) -> bool) -> Self {
         let mut own = Self { ids: BTreeSet::new(), factor: None, others_take: false };
         for at in 0..part.elements.len() as u32 {

@@ -12,7 +12,7 @@ use crate::diagnostics::{Diagnostic, Place, Result};
 pub(super) struct Contents(BTreeMap<PathBuf, [u64; 2]>);
 
 impl Contents {
-    /// Those of these files now; what cannot be read counts as empty, and whoever needs it says so.
+    /// Present contents of these files; a file that cannot be read counts as empty, and its reader reports it.
     pub(super) fn of(files: &[PathBuf], folder: &Path) -> Self {
         let digest = |file: &PathBuf| {
             let bytes = std::fs::read(file).unwrap_or_default();

@@ -107,7 +107,7 @@ struct NodesOfSmallDisplacement {
 }
 
 impl NodesOfSmallDisplacement {
-    /// Those of a part; collective.
+    /// The counts of a part; collective.
     fn of(part: &ModelPart) -> Self {
         let mut counts = [vec![0.0; part.nodes.len()], vec![0.0; part.nodes.len()]];
         let (elements, space) = (&part.elements, part.info.domain_size);

@@ -12,7 +12,7 @@ pub struct NumberedBodies {
 }
 
 impl NumberedBodies {
-    /// Those of a part; collective.
+    /// The bodies of a part; collective.
     pub fn of(part: &ModelPart) -> Self {
         let found = bodies_of_nodes(part);
         let sorted = |mut ids: Vec<usize>| {

@@ -227,7 +227,7 @@ pub trait Process: Send {
         Vec::new()
     }
 
-    /// Those of the files that it reads whose content decides results.
+    /// Files that it reads and whose content decides results.
     fn decisive_files(&self) -> Vec<std::path::PathBuf> {
         Vec::new()
     }

@@ -104,7 +104,7 @@ impl SupportedNodes {
                 let points = master.positions(part);
                 let foot = foot(part, node, normal(at), master, &points);
                 let Some(image) = local_coordinates(master.shape, &points, foot) else { continue };
-                // Those of its corners, which are positive all over a facet of second order, too.
+                // Shape functions of its corners, which are positive all over a facet of second order, too.
                 let mut shares = [0.0; MOST_NODES];
                 let linear = master.shape.linear();
                 shape_functions(linear, image.xi, &mut shares[..linear.nodes()]);

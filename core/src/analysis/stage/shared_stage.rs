@@ -26,7 +26,7 @@ pub(super) struct SharedStage<'a> {
     pub is_whole: bool,
     /// Files that the stage reads.
     pub inputs: Vec<FileUse>,
-    /// Those that decide results, beside deck and mesh: materials and tables.
+    /// Contents of the files that decide results, beside deck and mesh: materials and tables.
     pub contents: Vec<PathBuf>,
 }
 

@@ -147,7 +147,7 @@ impl Constrained {
     fn find_groups(&mut self, system: &System<'_>, block: &[u32]) -> Result<(), usize> {
         let layout = system.layout;
         let mut of_node = std::collections::BTreeMap::<u32, Vec<u32>>::new();
-        // Those of others whose rows are not here act on none that are.
+        // Multipliers of other ranks whose rows are not here act on no row that is.
         let is_own = self.ghosts.is_own();
         let is_known = |i: usize| is_own[i] || system.row(i).next().is_some();
         let is_here = |i: usize| layout.multiplier[i] && !layout.is_inactive(i) && is_known(i);
