@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::vector::{self, Scalar};
 
 /// Communication of the ranks that share a system; every method but the first two is collective.
-pub trait Processes: Send + Sync {
+pub trait Ranks: Send + Sync {
     /// Number of this rank, from 0.
     fn rank(&self) -> usize;
 
@@ -16,7 +16,7 @@ pub trait Processes: Send + Sync {
     /// The numbers of every rank, one after another; each gives as many numbers.
     fn gather(&self, own: &[f64]) -> Vec<f64>;
 
-    /// As [`Processes::exchange_numbers`], where `counts` says how many come from each rank.
+    /// As [`Ranks::exchange_numbers`], where `counts` says how many come from each rank.
     fn exchange_counted(&self, parts: &[Vec<f64>], counts: &[usize]) -> Vec<Vec<f64>>;
 
     /// Sends `parts[r]` to rank r; returns the numbers from each rank.
@@ -32,7 +32,7 @@ pub type Owned = (u32, u32);
 /// Places of the items of a vector: own ones, ghosts, and others of which this rank knows nothing.
 #[derive(Clone)]
 pub struct Ghosts {
-    processes: Option<Arc<dyn Processes>>,
+    ranks: Option<Arc<dyn Ranks>>,
     /// Places of own items, ascending; empty where they are the first.
     places: Vec<u32>,
     own: usize,
@@ -56,29 +56,29 @@ impl Ghosts {
     /// A rank that has all items itself.
     pub fn none(own: usize) -> Self {
         let (places, owned, sent, received) = Default::default();
-        Self { processes: None, places, own, all: own, owned, sent, received }
+        Self { ranks: None, places, own, all: own, owned, sent, received }
     }
 
     /// A rank with `own` items, the first, and ghosts of these after them; collective.
-    pub(crate) fn after(processes: Arc<dyn Processes>, own: usize, owned: &[Owned]) -> Self {
+    pub(crate) fn after(ranks: Arc<dyn Ranks>, own: usize, owned: &[Owned]) -> Self {
         let ghosts: Vec<(u32, Owned)> = (own as u32..).zip(owned.iter().copied()).collect();
         let all = own + ghosts.len();
-        let mut made = Self::new(processes, (0..own as u32).collect(), all, ghosts);
+        let mut made = Self::new(ranks, (0..own as u32).collect(), all, ghosts);
         made.places = Vec::new();
         made
     }
 
     /// A rank with own items at `places`, ascending, among `all`, and these ghosts; collective.
-    pub fn new(processes: Arc<dyn Processes>, places: Vec<u32>, all: usize, owned: Vec<(u32, Owned)>) -> Self {
-        let mut received = vec![Vec::new(); processes.size()];
-        let mut wanted = vec![Vec::new(); processes.size()];
+    pub fn new(ranks: Arc<dyn Ranks>, places: Vec<u32>, all: usize, owned: Vec<(u32, Owned)>) -> Self {
+        let mut received = vec![Vec::new(); ranks.size()];
+        let mut wanted = vec![Vec::new(); ranks.size()];
         for &(place, (owner, item)) in &owned {
             received[owner as usize].push(place);
             wanted[owner as usize].push(item);
         }
-        let mut sent = processes.exchange_indices(&wanted);
+        let mut sent = ranks.exchange_indices(&wanted);
         sent.iter_mut().flatten().for_each(|item| *item = places[*item as usize]);
-        Self { processes: Some(processes), own: places.len(), places, all, owned, sent, received }
+        Self { ranks: Some(ranks), own: places.len(), places, all, owned, sent, received }
     }
 
     /// Own entries of a vector over all places.
@@ -110,8 +110,8 @@ impl Ghosts {
     }
 
     /// The ranks, where there are several.
-    pub(crate) fn processes(&self) -> Option<&Arc<dyn Processes>> {
-        self.processes.as_ref()
+    pub(crate) fn ranks(&self) -> Option<&Arc<dyn Ranks>> {
+        self.ranks.as_ref()
     }
 
     /// Number of own items.
@@ -141,26 +141,26 @@ impl Ghosts {
 
     /// Gives ghosts, of `width` entries each, the values of their owners; collective.
     pub(crate) fn spread<T: Scalar>(&self, values: &mut [T], width: usize) {
-        let Some(processes) = &self.processes else { return };
-        let arrived = processes.exchange_counted(&packed(&self.sent, values, width), &counts(&self.received, width));
+        let Some(ranks) = &self.ranks else { return };
+        let arrived = ranks.exchange_counted(&packed(&self.sent, values, width), &counts(&self.received, width));
         for_each(&self.received, arrived, width, |at, value| values[at] = T::from_f64(value));
     }
 
     /// Adds the values of ghosts to the items of their owners; collective.
     pub(crate) fn collect(&self, values: &mut [f32], width: usize) {
-        let Some(processes) = &self.processes else { return };
-        let arrived = processes.exchange_counted(&packed(&self.received, values, width), &counts(&self.sent, width));
+        let Some(ranks) = &self.ranks else { return };
+        let arrived = ranks.exchange_counted(&packed(&self.received, values, width), &counts(&self.sent, width));
         for_each(&self.sent, arrived, width, |at, value| values[at] += value as f32);
     }
 
     /// The sum of one number of each rank; collective.
     pub(crate) fn total(&self, own: f64) -> f64 {
-        self.processes.as_ref().map_or(own, |processes| processes.gather(&[own]).iter().sum())
+        self.ranks.as_ref().map_or(own, |ranks| ranks.gather(&[own]).iter().sum())
     }
 
     /// The largest of one number of each rank; collective.
     pub(crate) fn largest(&self, own: f64) -> f64 {
-        self.processes.as_ref().map_or(own, |processes| processes.gather(&[own]).into_iter().fold(own, f64::max))
+        self.ranks.as_ref().map_or(own, |ranks| ranks.gather(&[own]).into_iter().fold(own, f64::max))
     }
 
     /// Whether it is true on any rank; collective.
@@ -178,10 +178,10 @@ impl Ghosts {
     /// All products are those with the vector as it came, so that it is read once, and that they travel together.
     pub(crate) fn orthogonalise<T: Scalar>(&self, basis: &[Vec<T>], vector: &mut [T]) -> Vec<f64> {
         let own = vector::products(basis, vector);
-        let sizes = match &self.processes {
+        let sizes = match &self.ranks {
             None => own,
-            Some(processes) => {
-                let all = processes.gather(&own);
+            Some(ranks) => {
+                let all = ranks.gather(&own);
                 (0..basis.len()).map(|k| all.iter().skip(k).step_by(basis.len()).sum()).collect()
             }
         };
@@ -192,7 +192,7 @@ impl Ghosts {
     /// Euclidean norm of a vector of own entries; collective.
     pub(crate) fn norm<T: Scalar>(&self, a: &[T]) -> f64 {
         let own = vector::norm(a);
-        self.processes.as_ref().map_or(own, |processes| vector::norm(&processes.gather(&[own])))
+        self.ranks.as_ref().map_or(own, |ranks| vector::norm(&ranks.gather(&[own])))
     }
 }
 

@@ -58,7 +58,7 @@ pub use components::Components;
 pub use condensation::{Condensation, CondensationSettings, NotCondensable};
 pub use condition::{Spectrum, condition_number};
 pub use csr::Csr;
-pub use ghosts::{Ghosts, Owned, Processes};
+pub use ghosts::{Ghosts, Owned, Ranks};
 pub use partition::{WeightedGraph, partition_graph};
 pub use rank::rank;
 pub use solver::{

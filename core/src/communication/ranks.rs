@@ -31,7 +31,7 @@ impl Ranks {
 }
 
 /// For solvers that work where the rows are.
-impl zelus_linear_algebra::Processes for Ranks {
+impl zelus_linear_algebra::Ranks for Ranks {
     fn rank(&self) -> usize {
         (**self).rank()
     }

@@ -37,7 +37,7 @@ impl Blocks {
     ) -> usize {
         let mut all = Vec::new();
         let multiply = |x: &[f32], y: &mut [f32]| {
-            if self.ghosts.processes().is_none() {
+            if self.ghosts.ranks().is_none() {
                 return self.matrix.mul_vec(x, y, Into::Set);
             }
             all.clear();

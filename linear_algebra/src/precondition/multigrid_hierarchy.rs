@@ -157,7 +157,7 @@ impl Multigrid {
             let (level, next, of_next) = Level::new(matrix, ghosts, coarse, near_null_space.len());
             levels.push(level);
             (matrix, ghosts) = (Arc::new(next), of_next);
-            if ghosts.processes().is_some() {
+            if ghosts.ranks().is_some() {
                 memory::give_back();
             }
         }
@@ -180,7 +180,7 @@ impl Multigrid {
 
     /// Whether several ranks share it; it cannot be saved then.
     pub(crate) fn is_shared(&self) -> bool {
-        self.coarsest.ghosts.processes().is_some()
+        self.coarsest.ghosts.ranks().is_some()
     }
 
     /// As [`Multigrid::apply`] in double precision, for the matrix times `size`; collective.
@@ -217,11 +217,11 @@ impl Multigrid {
 impl Coarsest {
     fn solve(&self, Vectors { b, x, step }: &mut Vectors) {
         let own: Vec<f64> = b[..step.len()].iter().map(|&b| f64::from(b)).collect();
-        let (mut all, first) = match self.ghosts.processes() {
+        let (mut all, first) = match self.ghosts.ranks() {
             None => (own, 0),
-            Some(processes) => {
-                let all = processes.exchange_counted(&vec![own; self.counts.len()], &self.counts).concat();
-                (all, self.counts[..processes.rank()].iter().sum())
+            Some(ranks) => {
+                let all = ranks.exchange_counted(&vec![own; self.counts.len()], &self.counts).concat();
+                (all, self.counts[..ranks.rank()].iter().sum())
             }
         };
         if let Some(factor) = &self.factor {

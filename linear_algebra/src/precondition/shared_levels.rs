@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::aggregation::{NONE, Tentative};
 use super::block_matrix::BlockMatrix;
-use crate::ghosts::{Ghosts, Owned, Processes};
+use crate::ghosts::{Ghosts, Owned, Ranks};
 
 /// Aggregates as one rank counts them: its own, then those of others as it meets them.
 pub(super) struct Aggregates {
@@ -21,7 +21,7 @@ type Rows = Vec<(Vec<u32>, Vec<f32>)>;
 impl Aggregates {
     /// The own ones of a rank.
     pub(super) fn new(ghosts: &Ghosts, own: usize) -> Self {
-        let rank = ghosts.processes().map_or(0, |processes| processes.rank() as u32);
+        let rank = ghosts.ranks().map_or(0, |ranks| ranks.rank() as u32);
         Self { rank, own, others: Vec::new(), at: BTreeMap::new() }
     }
 
@@ -52,7 +52,7 @@ impl Aggregates {
 
     /// Appends the tentative prolongation of ghosts, of `wide` entries a block; collective.
     pub(super) fn complete(&mut self, ghosts: &Ghosts, tentative: &mut Tentative, wide: usize) {
-        let Some(processes) = ghosts.processes() else { return };
+        let Some(ranks) = ghosts.ranks() else { return };
         let message = |list: &Vec<u32>| -> Vec<f64> {
             let block = |&at: &u32| {
                 let (aggregate, start) = (tentative.aggregate[at as usize], at as usize * wide);
@@ -61,7 +61,7 @@ impl Aggregates {
             };
             list.iter().flat_map(block).collect()
         };
-        let arrived = processes.exchange_numbers(&ghosts.sent().iter().map(message).collect::<Vec<_>>());
+        let arrived = ranks.exchange_numbers(&ghosts.sent().iter().map(message).collect::<Vec<_>>());
         tentative.aggregate.resize(ghosts.all(), NONE);
         tentative.values.resize(ghosts.all() * wide, 0.0);
         for (owner, (list, arrived)) in ghosts.received().iter().zip(arrived).enumerate() {
@@ -83,13 +83,13 @@ impl Aggregates {
         prolongation: &mut BlockMatrix,
         restriction: &mut BlockMatrix,
     ) -> (BlockMatrix, Ghosts) {
-        let Some(processes) = ghosts.processes() else {
+        let Some(ranks) = ghosts.ranks() else {
             return (restriction.times_product(matrix, prolongation), Ghosts::none(self.own));
         };
-        let processes = processes.as_ref();
+        let ranks = ranks.as_ref();
         let rows =
             ghosts.sent().iter().map(|list| list.iter().map(|&at| (None, prolongation.row(at as usize))).collect());
-        let arrived = self.exchange(processes, rows.collect(), prolongation.size());
+        let arrived = self.exchange(ranks, rows.collect(), prolongation.size());
         let mut of_ghosts: Rows = vec![Default::default(); ghosts.all() - ghosts.own()];
         for (list, arrived) in ghosts.received().iter().zip(arrived) {
             list.iter().zip(arrived).for_each(|(&at, (_, row))| of_ghosts[at as usize - ghosts.own()] = row);
@@ -107,11 +107,11 @@ impl Aggregates {
         restriction.add_rows(self.all());
         let here = restriction.times_product(matrix, &whole);
         drop(whole);
-        let mut sent = vec![Vec::new(); processes.size()];
+        let mut sent = vec![Vec::new(); ranks.size()];
         for (at, &(owner, item)) in self.others.iter().enumerate() {
             sent[owner as usize].push((Some(item), here.row(self.own + at)));
         }
-        let arrived = self.exchange(processes, sent, here.size());
+        let arrived = self.exchange(ranks, sent, here.size());
         let mut added: Vec<Rows> = vec![Vec::new(); self.own];
         for (item, row) in arrived.into_iter().flatten() {
             added[item as usize].push(row);
@@ -127,14 +127,14 @@ impl Aggregates {
         });
         restriction.add_rows(self.all());
         prolongation.columns = self.all();
-        let ghosts = Ghosts::after(ghosts.processes().expect("several").clone(), self.own, &self.others);
+        let ghosts = Ghosts::after(ghosts.ranks().expect("several").clone(), self.own, &self.others);
         (next, ghosts)
     }
 
     /// Sends block rows, with a number each, to each rank; returns those from each. Collective.
     fn exchange(
         &mut self,
-        processes: &dyn Processes,
+        ranks: &dyn Ranks,
         rows: Vec<Vec<(Option<u32>, (&[u32], &[f32]))>>,
         size: usize,
     ) -> Vec<Vec<(u32, (Vec<u32>, Vec<f32>))>> {
@@ -149,7 +149,7 @@ impl Aggregates {
             indices.push(of_list);
             values.push(entries);
         }
-        let (indices, values) = (processes.exchange_indices(&indices), processes.exchange_numbers(&values));
+        let (indices, values) = (ranks.exchange_indices(&indices), ranks.exchange_numbers(&values));
         let mut out = Vec::new();
         for (mut indices, values) in indices.iter().map(|list| &list[..]).zip(values) {
             let (mut rows, mut start) = (Vec::new(), 0);
@@ -168,10 +168,10 @@ impl Aggregates {
 
 /// The matrices of all ranks as one, on each of them, and how many of its rows are those of each; collective.
 pub(super) fn gathered(ghosts: &Ghosts, matrix: &BlockMatrix) -> (BlockMatrix, Vec<usize>) {
-    let Some(processes) = ghosts.processes() else { return (matrix.clone(), vec![matrix.rows]) };
-    let counts: Vec<usize> = processes.gather(&[matrix.rows as f64]).iter().map(|&count| count as usize).collect();
+    let Some(ranks) = ghosts.ranks() else { return (matrix.clone(), vec![matrix.rows]) };
+    let counts: Vec<usize> = ranks.gather(&[matrix.rows as f64]).iter().map(|&count| count as usize).collect();
     let first = |rank: usize| counts[..rank].iter().sum::<usize>();
-    let rank = processes.rank();
+    let rank = ranks.rank();
     let number = |j: u32| match (j as usize).checked_sub(ghosts.own()) {
         None => first(rank) as u32 + j,
         Some(at) => {
@@ -185,9 +185,9 @@ pub(super) fn gathered(ghosts: &Ghosts, matrix: &BlockMatrix) -> (BlockMatrix, V
         own.push(columns.len() as u32);
         own.extend(columns.iter().map(|&j| number(j)));
     }
-    let indices = processes.exchange_indices(&vec![own; processes.size()]);
+    let indices = ranks.exchange_indices(&vec![own; ranks.size()]);
     let own: Vec<f64> = matrix.entries().map(f64::from).collect();
-    let values = processes.exchange_numbers(&vec![own; processes.size()]);
+    let values = ranks.exchange_numbers(&vec![own; ranks.size()]);
     let mut rows: Rows = Vec::new();
     for (mut indices, values) in indices.iter().map(|list| &list[..]).zip(&values) {
         let mut start = 0;

@@ -57,7 +57,7 @@ pub(crate) struct Constrained {
 
 /// Who has which blocks, those of own equations before others'; collective.
 fn shared_blocks(ghosts: &Ghosts, place: &[u32], equation: &[u32], width: usize, own: usize) -> Ghosts {
-    let Some(processes) = ghosts.processes() else { return Ghosts::none(own) };
+    let Some(ranks) = ghosts.ranks() else { return Ghosts::none(own) };
     // The block of each equation, as its owner counts them.
     let mut block: Vec<f64> =
         place.iter().map(|&p| if p == NONE { -1.0 } else { f64::from(p / width as u32) }).collect();
@@ -66,7 +66,7 @@ fn shared_blocks(ghosts: &Ghosts, place: &[u32], equation: &[u32], width: usize,
     for &(e, (owner, _)) in ghosts.owned().iter().filter(|(e, _)| place[*e as usize] != NONE) {
         owned[place[e as usize] as usize / width - own] = (owner, block[e as usize] as u32);
     }
-    Ghosts::after(processes.clone(), own, &owned)
+    Ghosts::after(ranks.clone(), own, &owned)
 }
 
 /// Columns of a row of both parts of a system, zeros among them.
@@ -195,7 +195,7 @@ impl Constrained {
             }
         }
         for m in lone {
-            if self.ghosts.processes().is_some() {
+            if self.ghosts.ranks().is_some() {
                 // Its unknown depends on the unknowns of others, which may be on other ranks.
                 return Err(m as usize);
             }

@@ -94,7 +94,7 @@ impl Constrained {
 
     /// The reduced system, its matrix over its largest diagonal entry; `earlier` is of the same bulk. Collective.
     pub(crate) fn reduced_blocks(&self, system: &System<'_>, earlier: Option<&Blocks>) -> Blocks {
-        let earlier = earlier.filter(|_| self.blocks.processes().is_none());
+        let earlier = earlier.filter(|_| self.blocks.ranks().is_none());
         let largest = earlier.map_or_else(|| self.largest_diagonal(system), |earlier| earlier.size);
         let mut loads: Vec<Option<&[(u32, f64)]>> = vec![None; system.equations()];
         self.master_rows.iter().for_each(|(e, load)| loads[*e as usize] = Some(load));
@@ -229,7 +229,7 @@ impl Constrained {
         let keeps = |earlier: &Blocks, b: usize| of_bulk[b] && earlier.of_bulk[b];
         let kept = earlier.map(|earlier| (&*earlier.matrix, move |b: usize| keeps(earlier, b)));
         let matrix = Arc::new(BlockMatrix::from_rows_with(shape, [w; 2], kept, scratch, fill));
-        if self.blocks.processes().is_some() {
+        if self.blocks.ranks().is_some() {
             memory::give_back();
         }
         Blocks { matrix, size: largest, of_bulk, ghosts: self.blocks.clone() }
