@@ -65,7 +65,7 @@ impl fmt::Display for Place {
 pub enum Severity {
     /// Worth knowing, nothing to do about it.
     Note,
-    /// The run goes on; the log and the report of the run show it.
+    /// The run continues; the log and the report of the run show it.
     Warning,
     /// The run does not start, or ends.
     Error,

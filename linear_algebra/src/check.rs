@@ -97,7 +97,7 @@ pub(crate) fn empty_rows_among(system: &System<'_>, zero_in_bulk: &[usize]) -> R
     Err(SolveError::Singular { equations: empty.into_iter().take(NAMED_EQUATIONS).collect(), rank_deficiency })
 }
 
-/// An answer and how good it is.
+/// Residual of a solution after steps of iterative refinement.
 pub(crate) struct Refined {
     pub(crate) relative_residual: f64,
     pub(crate) steps: usize,
@@ -175,7 +175,7 @@ pub(crate) fn is_rounding(system: &System<'_>, rhs: &[f64], x: &[f64]) -> bool {
     system.residual(rhs, x, &mut residual) <= ROUNDING * vector::norm(&magnitude(system, x))
 }
 
-/// The error for an answer whose residual is too large.
+/// The error for a solution whose residual is too large.
 pub(crate) fn refused(engine: &'static str, refined: &Refined, tolerance: f64) -> SolveError {
     SolveError::NotConverged {
         engine,

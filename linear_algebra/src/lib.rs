@@ -1,7 +1,7 @@
 //! Sparse linear algebra: matrices, orderings and solvers; knows nothing of finite elements.
 //!
 //! A module uses only those above it in the list below. A [`System`] is a [`Csr`] matrix in two parts, the bulk and the coupling of an
-//! interface, with stamps that tell changes; [`create`] makes a [`LinearSolver`] for it. Every answer has passed a check of its true
+//! interface, with stamps that tell changes; [`create`] makes a [`LinearSolver`] for it. Every solution has passed a check of its true
 //! residual, and none depends on the number of threads.
 
 pub mod address_space;

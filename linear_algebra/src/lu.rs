@@ -15,7 +15,7 @@ use crate::multifrontal::Scaling;
 use crate::solver::{LinearSolver, SolveError, SolveReport};
 use crate::system::{Stamps, System};
 
-/// Relative residual above which an answer is refused.
+/// Relative residual above which a solution is refused.
 const TOLERANCE: f64 = 1e-6;
 /// Largest number of steps of iterative refinement.
 const REFINEMENTS: usize = 5;

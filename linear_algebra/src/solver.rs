@@ -8,13 +8,13 @@ use crate::system::{Layout, System};
 /// Report of one solve.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SolveReport {
-    /// The engine that gave the answer.
+    /// The engine that gave the solution.
     pub engine: &'static str,
-    /// `‖b - A x‖ / ‖b‖` of the answer, measured on the true matrix; zero when `b` is zero.
+    /// `‖b - A x‖ / ‖b‖` of the solution, measured on the true matrix; zero when `b` is zero.
     pub relative_residual: f64,
     /// Krylov iterations, or steps of iterative refinement for a direct engine.
     pub iterations: usize,
-    /// Why another engine than the one asked for gave the answer.
+    /// Why another engine than the one asked for gave the solution.
     pub fallback: Option<String>,
     /// Seconds spent on ordering and symbolic factorisation; zero when reused.
     pub seconds_symbolic: f64,
@@ -25,7 +25,7 @@ pub struct SolveReport {
 }
 
 impl SolveReport {
-    /// Counts the iterations and seconds of another solve for the same answer.
+    /// Counts the iterations and seconds of another solve for the same solution.
     pub fn add_effort(&mut self, other: &Self) {
         self.iterations += other.iterations;
         self.seconds_symbolic += other.seconds_symbolic;
@@ -34,7 +34,7 @@ impl SolveReport {
     }
 }
 
-/// Why a solve gave no answer.
+/// Why a solve gave no solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SolveError {
     /// The matrix is singular; `equations` are the most suspicious ones, worst first.
@@ -46,7 +46,7 @@ pub enum SolveError {
         /// Number of tiny pivots, where it is known.
         rank_deficiency: Option<usize>,
     },
-    /// The answer does not reach the accuracy asked for.
+    /// The solution does not reach the accuracy asked for.
     #[error(
         "{engine} did not converge: relative residual {relative_residual:.3e} after {iterations} iterations, \
          {tolerance:.1e} wanted"
@@ -92,11 +92,11 @@ pub trait LinearSolver: Send {
         self.name().to_owned()
     }
 
-    /// Solves `(bulk + coupling) x = rhs`; `x` is the first guess of iterative engines and the answer.
+    /// Solves `(bulk + coupling) x = rhs`; `x` is the initial guess of iterative engines and the solution.
     ///
     /// # Errors
     /// [`SolveError::Singular`] when the matrix has no inverse, [`SolveError::NotConverged`] when the residual stays
-    /// too large, [`SolveError::Failed`] for input that is not finite or does not fit. `x` is then not an answer.
+    /// too large, [`SolveError::Failed`] for input that is not finite or does not fit. `x` is then not a solution.
     fn solve(&mut self, system: &System<'_>, rhs: &[f64], x: &mut [f64]) -> Result<SolveReport, SolveError>;
 
     /// Drops caches, so that a restarted run gives the same bits: later solutions depend on earlier matrices through
@@ -187,7 +187,7 @@ pub struct DirectSettings {
     /// Numbers of a factor (of one of the two of a matrix without symmetry) from which on it is kept in single precision,
     /// where refinement makes up for it.
     pub single_from: usize,
-    /// Relative residual above which an answer is refused.
+    /// Relative residual above which a solution is refused.
     pub tolerance: f64,
     /// Largest number of steps of iterative refinement.
     pub refinements: usize,

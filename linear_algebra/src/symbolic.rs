@@ -9,7 +9,7 @@ use crate::system::Layout;
 
 const NONE: usize = usize::MAX;
 /// The position of an inactive equation.
-const HELD: u32 = u32::MAX;
+const INACTIVE: u32 = u32::MAX;
 
 /// A stretch of consecutive rows of a front and where it lies in the front of the parent.
 #[derive(Debug, Clone, Copy)]
@@ -60,7 +60,7 @@ impl Front {
 pub(crate) struct Symbolic {
     /// Equation at each position; inactive ones have none.
     pub(crate) equation: Vec<u32>,
-    /// Position of each equation, [`HELD`] of those that have none.
+    /// Position of each equation, [`INACTIVE`] of those that have none.
     position: Vec<u32>,
     pub(crate) fronts: Vec<Front>,
     /// Roots of the forest, ascending.
@@ -176,7 +176,7 @@ impl Symbolic {
             }
             begin = end;
         }
-        let mut position = vec![HELD; equations];
+        let mut position = vec![INACTIVE; equations];
         for (at, &i) in equation.iter().enumerate() {
             position[i as usize] = at as u32;
         }
@@ -195,14 +195,16 @@ impl Symbolic {
         (tops, root)
     }
 
-    /// Number of equations, those that are held among them.
+    /// Number of equations, inactive ones included.
     pub(crate) fn equations(&self) -> usize {
         self.position.len()
     }
 
-    /// Position of an equation; `None` of one that is held.
+    /// Position of an equation; `None` of an inactive one.
     pub(crate) fn position_of(&self, equation: u32) -> Option<usize> {
-        Some(self.position[equation as usize]).filter(|&position| position != HELD).map(|position| position as usize)
+        Some(self.position[equation as usize])
+            .filter(|&position| position != INACTIVE)
+            .map(|position| position as usize)
     }
 
     /// Number of fronts that are eliminated.

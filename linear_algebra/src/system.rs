@@ -51,7 +51,7 @@ impl Layout {
         }
     }
 
-    /// Number of equations, those that are held among them.
+    /// Number of equations, inactive ones included.
     pub fn equations(&self) -> usize {
         self.node.len()
     }
@@ -110,7 +110,7 @@ impl<'a> System<'a> {
         }
     }
 
-    /// Number of equations, those that are held among them.
+    /// Number of equations, inactive ones included.
     pub fn equations(&self) -> usize {
         self.shared.map_or(self.bulk.rows, Ghosts::all)
     }
@@ -120,7 +120,7 @@ impl<'a> System<'a> {
         self.coupling.filter(|coupling| coupling.entries() > 0)
     }
 
-    /// Number of equations that are not held.
+    /// Number of active equations.
     pub fn free(&self) -> usize {
         self.equations() - self.layout.inactive.iter().filter(|is_inactive| **is_inactive).count()
     }
@@ -167,7 +167,7 @@ impl<'a> System<'a> {
         self.clear_inactive(y);
     }
 
-    /// As [`System::mul_vec`], to the bit, at equations that are not held, with the runs of the bulk's rows.
+    /// As [`System::mul_vec`], to the bit, at active equations, with the runs of the bulk's rows.
     pub(crate) fn mul_vec_by_runs(&self, runs: &Runs, x: &[f64], y: &mut [f64]) {
         self.bulk_product(runs, x, y);
         self.add_coupling_product(x, y);

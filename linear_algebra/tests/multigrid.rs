@@ -242,7 +242,7 @@ fn the_direct_engine_takes_over_where_it_costs_less() {
     assert_eq!(engines(1e-2, true), [(true, false); 2]);
 }
 
-/// A system some of whose equations are held, and the same without them.
+/// A system with inactive equations, and the same without them.
 struct InactiveRows {
     whole: Contact,
     left: Contact,

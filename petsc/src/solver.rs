@@ -27,7 +27,7 @@ pub struct PetscSettings {
     pub tolerance: f64,
     /// Largest number of Krylov iterations.
     pub iterations: usize,
-    /// Relative residual above which an answer is refused.
+    /// Relative residual above which a solution is refused.
     pub refused_above: f64,
     /// Options of PETSc, as on its command line; they win over those of the engine.
     pub options: String,

@@ -19,7 +19,7 @@ pub(crate) struct PythonProcess {
     pub(crate) line: Arc<Line>,
     /// Description of its residual, where it has one.
     pub(crate) residual: Option<Description>,
-    /// Whether it was told that the loop begins; a run that goes on from a saved one does not tell.
+    /// Whether it was told that the loop begins; a restarted run does not tell.
     pub(crate) has_begun: bool,
 }
 

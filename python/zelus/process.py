@@ -49,7 +49,7 @@ class Process:
         """Writes output."""
 
     def Clear(self):
-        """Forgets what can be made again."""
+        """Drops caches."""
 
 
 class OutputProcess(Process):

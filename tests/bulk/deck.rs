@@ -116,15 +116,15 @@ impl<'a> Deck<'a> {
         self
     }
 
-    /// Puts conditions of a family on facets and gives them a scalar.
+    /// Puts conditions of a kind on facets and gives them a scalar.
     pub fn scalar_load(
         &mut self,
         wanted: impl Fn(Vec3) -> bool,
-        family: &str,
+        kind: &str,
         variable: &str,
         value: Value,
     ) -> &mut Self {
-        let part = self.facets(wanted, family);
+        let part = self.facets(wanted, kind);
         self.process(
             "assign_scalar_variable_to_conditions_process",
             json!({
@@ -133,15 +133,15 @@ impl<'a> Deck<'a> {
         )
     }
 
-    /// Puts conditions of a family on facets and gives them a vector.
+    /// Puts conditions of a kind on facets and gives them a vector.
     pub fn vector_load(
         &mut self,
         wanted: impl Fn(Vec3) -> bool,
-        family: &str,
+        kind: &str,
         variable: &str,
         value: [Value; 3],
     ) -> &mut Self {
-        let part = self.facets(wanted, family);
+        let part = self.facets(wanted, kind);
         self.process(
             "assign_vector_variable_to_conditions_process",
             json!({
@@ -150,11 +150,11 @@ impl<'a> Deck<'a> {
         )
     }
 
-    /// Puts conditions of a family on facets; the path of their part.
-    pub fn facets(&mut self, wanted: impl Fn(Vec3) -> bool, family: &str) -> String {
+    /// Puts conditions of a kind on facets; the path of their part.
+    pub fn facets(&mut self, wanted: impl Fn(Vec3) -> bool, kind: &str) -> String {
         let facets = self.grid.facets_where(wanted);
         let shape: Shape = facets.first().expect("a facet").0;
-        let name = format!("{family}{}", shape.cell().suffix(self.dim));
+        let name = format!("{kind}{}", shape.cell().suffix(self.dim));
         let nodes: Vec<Vec<usize>> = facets.into_iter().map(|(_, nodes)| nodes).collect();
         let mut all: Vec<usize> = nodes.concat();
         all.sort_unstable();

@@ -1,4 +1,4 @@
-//! Where a deck says that a run is saved between stages, and from where it goes on.
+//! Files in which a deck saves a run between stages, and from which it restarts.
 
 use std::path::{Path, PathBuf};
 

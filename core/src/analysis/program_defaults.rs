@@ -1,4 +1,4 @@
-//! Defaults of another program, laid under a deck that asks for them: `--like kratos`, or `"like"` of `problem_data`.
+//! Defaults of another program, for a deck that asks for them: `--like kratos`, or `"like"` of `problem_data`.
 //!
 //! Each registered object gives in its `like` the default of that program. These values are put into the deck before anything reads it,
 //! so that they are settings like any other and nothing else knows of them.

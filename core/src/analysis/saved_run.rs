@@ -86,7 +86,7 @@ impl LoadedRun {
     }
 }
 
-/// Settings that may be others when a run goes on: by them it runs on, or says less.
+/// Settings that may change at a restart: they extend the run, or change its messages.
 const FREE: [&str; 5] = [
     "problem_data.end_time",
     "problem_data.autosave_minutes",

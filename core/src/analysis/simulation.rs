@@ -195,8 +195,8 @@ impl Simulation {
         self.end_early(false)
     }
 
-    fn end_early(&mut self, goes_on: bool) -> Result<()> {
-        let ended = self.timed(|simulation| simulation.end_stage(Ok(()), goes_on));
+    fn end_early(&mut self, is_suspended: bool) -> Result<()> {
+        let ended = self.timed(|simulation| simulation.end_stage(Ok(()), is_suspended));
         self.over = self.stages.len();
         self.report.converged = false;
         ended
@@ -249,7 +249,7 @@ impl Simulation {
         Ok(path)
     }
 
-    /// Saves the run beside its deck, as [`Simulation::suspend`] does, and goes on, where more than `autosave_minutes` of the clock have
+    /// Saves the run beside its deck, as [`Simulation::suspend`] does, and continues, where more than `autosave_minutes` of the clock have
     /// passed since it was saved and no process of the deck saves it; the file where it was saved. Collective.
     ///
     /// # Errors
@@ -493,13 +493,13 @@ impl Simulation {
         Ok(false)
     }
 
-    /// Brings the processes of the stage under way to their end, `result` being that of its last step; `goes_on` says that it is saved and
-    /// goes on later.
-    fn end_stage(&mut self, result: Result<()>, goes_on: bool) -> Result<()> {
+    /// Brings the processes of the stage under way to their end, `result` being that of its last step; `is_suspended` says that it is saved,
+    /// to be restarted later.
+    fn end_stage(&mut self, result: Result<()>, is_suspended: bool) -> Result<()> {
         let Some(stage) = self.stage.take() else { return result };
         self.before = None;
         let (model, systems, report) = (&mut self.model, &mut self.systems, &mut self.report);
-        let ended = stage.finish((result, goes_on), model, systems, report, self.driver.as_mut());
+        let ended = stage.finish((result, is_suspended), model, systems, report, self.driver.as_mut());
         self.over = if ended.is_ok() { self.over + 1 } else { self.stages.len() };
         self.report.converged = ended.is_ok() && self.over == self.stages.len();
         ended

@@ -20,7 +20,7 @@ use crate::strategies::{
     linear_tolerance, make_linear_solver, multipliers,
 };
 
-/// Steps that nodes may remember.
+/// Most time levels of nodes.
 const MOST_LEVELS: usize = 100;
 /// Further variables with history.
 const AUXILIARY: &str = "auxiliary_variables_list";

@@ -9,7 +9,7 @@ use super::equations::Equations;
 pub struct Numbering {
     /// First number of each rank, and the number of all equations.
     pub starts: Vec<usize>,
-    /// Number of each equation this rank has; [`NONE`](super::NONE) where unknowns are counted and one is held.
+    /// Number of each equation this rank has; [`NONE`](super::NONE) where unknowns are counted and one is inactive.
     pub numbers: Vec<u32>,
     /// Equations this rank owns, ascending, as they are counted here.
     pub own: Vec<u32>,
@@ -34,7 +34,7 @@ impl Numbering {
         Self { starts, numbers, own }
     }
 
-    /// The same numbers where all unknowns count for equations, of which none follow others and some are held.
+    /// The same numbers where all unknowns count for equations, of which none follow others and some are inactive.
     pub(super) fn of_unknowns(&self, equations: &Equations) -> Self {
         let unknowns = equations.unknowns();
         let mut numbers = vec![NONE; equations.unknown_count()];

@@ -1,7 +1,7 @@
 //! Settings as the deck writes them: JSON with positions, checked against defaults, and functions of space and time.
 //!
 //! A [`Document`] is a parsed file whose every [`Node`] knows its place. A registered object states its [`Defaults`]
-//! (a JSON text that documents each key); [`Settings::validate`] lays the user's node over them, reports every key or
+//! (a JSON text that documents each key); [`Settings::validate`] merges the user's node with them, reports every key or
 //! type that does not fit, and hands out typed values, key by key or as one `serde` struct. [`Interval`] and
 //! [`Expression`] are kinds of value that decks use in many places.
 

@@ -1,4 +1,4 @@
-//! One object's settings: the user's node laid over the defaults, strictly.
+//! One object's settings: the user's node merged with the defaults, strictly.
 
 use super::defaults::Defaults;
 use super::merge::Merger;

@@ -106,7 +106,7 @@ pub trait Process: Send {
         Ok(())
     }
 
-    /// Takes the state at the start, once every process is ready, to be written once a step is done; not of a run that goes on.
+    /// Takes the state at the start, once every process is ready, to be written once a step is done; not of a restarted run.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -209,7 +209,7 @@ pub trait Process: Send {
         Ok(())
     }
 
-    /// The run ends here and goes on later from its saved state, which this must not change.
+    /// The run ends here and is restarted later from its saved state, which this must not change.
     ///
     /// # Errors
     /// As [`Process::finalize`].

@@ -11,9 +11,9 @@ pub struct TimeTable {
     pub name: String,
     /// Where the deck names it.
     pub place: Place,
-    /// First time of the table, and whether its values change there: before it they go on with the first slope.
+    /// First time of the table, and whether its values change there: before it they continue with the first slope.
     pub begin: (f64, bool),
-    /// Last time of the table, and whether its values change there: beyond it they go on with the last slope.
+    /// Last time of the table, and whether its values change there: beyond it they continue with the last slope.
     pub end: (f64, bool),
     /// Cells that are empty, and count as zero since the deck does not say by what they are replaced.
     pub missing: usize,

@@ -4,7 +4,7 @@ use super::{Registered, require};
 use crate::Result;
 use crate::parameters::{Defaults, Node, Settings};
 
-/// The entry that `key` of an object names, and the rest of the object laid over its defaults: `{"law": "gas", "conductivity": 2.0}`.
+/// The entry that `key` of an object names, and the rest of the object merged with its defaults: `{"law": "gas", "conductivity": 2.0}`.
 ///
 /// # Errors
 /// No such key, an unknown name, settings that do not fit.

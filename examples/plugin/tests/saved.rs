@@ -1,4 +1,4 @@
-//! Runs of additions from outside go on from a saved run with the same bits: what they remember is in the file.
+//! Restarted runs of additions from outside are bitwise identical: their history is in the saved run.
 
 use std::path::Path;
 

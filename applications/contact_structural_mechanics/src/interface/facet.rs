@@ -1,4 +1,4 @@
-//! One piece of a contact surface.
+//! A facet of a contact surface.
 
 use std::ops::Deref;
 
@@ -30,7 +30,7 @@ pub enum FacetSource {
     Face(u32),
 }
 
-/// One piece of a contact surface; its nodes go round so that the normal points out of the body.
+/// A facet of a contact surface; its nodes go round so that the normal points out of the body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Facet {
     /// Node indices.

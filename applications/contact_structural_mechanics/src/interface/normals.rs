@@ -1,4 +1,4 @@
-//! Normals of contact surfaces, and how they turn when nodes move.
+//! Normals of contact surfaces, and how they rotate when nodes move.
 //!
 //! The normal of a node is S/|S| with the sum S of v over its facets. Everything in the present configuration, outward. At a
 //! node of a facet whose next and previous nodes lie along the edges a and b (in the plane a line has one edge, the other is

@@ -1,6 +1,6 @@
 //! The settings in which Kratos' contact is not the best method known.
 
-/// A setting that `--like kratos` lays under a deck.
+/// A setting with another default under `--like kratos`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Deviation {
     /// Registered objects whose setting it is, as files of `configs/like_kratos`.

@@ -1,4 +1,4 @@
-//! Behaviour of contact that only reproduces Kratos, behind the settings that `--like kratos` lays under a deck.
+//! Behaviour of contact that only reproduces Kratos, behind the settings whose defaults `--like kratos` changes.
 //!
 //! [`DEVIATIONS`] names each with its source; `tests/contact/like_kratos.rs` switches each off and states the change. Where one is a
 //! formula of its own it stands here ([`FlatMaster`], [`FirstIterateTangent`], [`PenaltyUnit`]); the others are values of settings

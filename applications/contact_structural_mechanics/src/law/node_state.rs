@@ -11,7 +11,7 @@ pub enum NodeState {
     /// Not in contact.
     #[default]
     Inactive,
-    /// In contact and held in the tangential direction.
+    /// In contact and restrained in the tangential direction.
     Stick,
     /// In contact and sliding; the active state of frictionless contact.
     Slip,
@@ -56,14 +56,14 @@ impl MultiplierConstraint {
     }
 }
 
-/// How the direction of sliding of a node of area A turns with its trial traction q̂ = k P λ + κ c WS/A, τ = q̂/|q̂|.
+/// How the direction of sliding of a node of area A rotates with its trial traction q̂ = k P λ + κ c WS/A, τ = q̂/|q̂|.
 ///
 /// Zero where the direction is a sign, as in the plane. It enters the tangent only; without it a body that slides is free
 /// across its direction.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct DirectionRotation {
     /// κ b/|q̂|, with the sum b of the bounds that the pairs of the node state: slip across τ, in shares of the slip that stick
-    /// would forbid. By the penalty method 1/|q|: turning by trial traction.
+    /// would forbid. By the penalty method 1/|q|: rotation by trial traction.
     pub by_slip: f64,
     /// k/|q̂|: traction by multiplier across τ, in shares of the bound.
     pub by_multiplier: f64,

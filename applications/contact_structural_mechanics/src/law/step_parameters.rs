@@ -30,12 +30,12 @@ pub enum NormalVariation {
 }
 
 impl NormalVariation {
-    /// Whether the tangent knows how the normals of facets turn.
+    /// Whether the tangent knows how the normals of facets rotate.
     pub fn knows_facets(self) -> bool {
         matches!(self, Self::Elemental | Self::NodalElemental | Self::Exact)
     }
 
-    /// Whether the tangent knows how the normals of nodes turn.
+    /// Whether the tangent knows how the normals of nodes rotate.
     pub fn knows_nodes(self) -> bool {
         matches!(self, Self::NodalElemental | Self::Exact)
     }

@@ -10,9 +10,9 @@
 //! them, for then their bounds hold gaps that add up to zero.
 //!
 //! In the regularised methods (1/ε > 0), g̃ − A k λ·n/ε and s − A (k P λ − P R t°)/(κ ε) take the places of g̃ and s: the inelastic
-//! parts of gap and slip. t° is the traction of the last accepted state, turned with the facet by R.
+//! parts of gap and slip. t° is the traction of the last accepted state, rotated with the facet by R.
 //!
-//! In space the direction τ of sliding turns with the trial traction, which the tangent knows. The slip s is the objective one when
+//! In space the direction τ of sliding rotates with the trial traction, which the tangent knows. The slip s is the objective one when
 //! both operators changed by more than a threshold since the start of the step, otherwise −P [D δ¹ − M δ²] with δ = x − x_reference. In
 //! dynamics and in the regularised methods it is that of [`SlipMeasure::Rotated`]: the tractions do work on its rate, so that friction
 //! makes no energy. Where pairs augment, as in Kratos, it never is. In long static steps the objective one is nearer to the closed

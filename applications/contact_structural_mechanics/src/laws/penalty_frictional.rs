@@ -1,8 +1,8 @@
 //! Friction by the penalty method, pair by pair: an elastic slip that the law of friction limits.
 //!
-//! Trial traction q = P R t° + κ ε s: the traction t° of the last accepted state, turned with the facet by R, and the weighted
+//! Trial traction q = P R t° + κ ε s: the traction t° of the last accepted state, rotated with the facet by R, and the weighted
 //! slip s of the pair since then. Stick: t = q. Slip: t = b(ε g̃) τ, with b the bound of the law and τ the direction of the trial
-//! traction of all pairs of the node; in space the tangent knows how it turns. An active node has the force p = f (ε g̃ n + t),
+//! traction of all pairs of the node; in space the tangent knows how it rotates. An active node has the force p = f (ε g̃ n + t),
 //! which acts through D and M.
 
 use zelus_core::scalar::Real;

@@ -82,7 +82,7 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// A pair that overlaps and remembers nothing, with these normals of its slave and its master.
+    /// A pair that overlaps and has no history, with these normals of its slave and its master.
     pub fn new(key: PairKey, [slave_normal, master_normal]: [[f64; 3]; 2]) -> Self {
         let (area, previous, choices) = Default::default();
         Self { key, slave_normal, master_normal, overlapping: true, area, previous, choices }

@@ -49,7 +49,7 @@ pub struct SlaveLawState {
     pub slides: Option<bool>,
     /// Tangential traction before the law of friction limits it; where points decide, their mean traction (force per area).
     pub trial: [f64; 3],
-    /// Tangential traction carried from step to step, in formulations that do (force per area).
+    /// Tangential history traction, in formulations that have one (force per area).
     pub history_traction: [f64; 3],
     /// Normal pressure that Uzawa's iteration keeps between updates, negative in compression (force per area).
     pub uzawa_pressure: f64,
@@ -59,7 +59,7 @@ pub struct SlaveLawState {
     pub multiplier_weight: f64,
     /// Unit tangent τ: the direction of sliding.
     pub tangent: [f64; 3],
-    /// How that direction turns with the unknowns.
+    /// How that direction rotates with the unknowns.
     pub rotation: DirectionRotation,
     /// Whether points around it are in contact until the next solve, whatever their pressure.
     pub forced_active: bool,

@@ -33,7 +33,7 @@ pub struct SlaveColumns {
     pub tractions: bool,
     /// Whether directions, slips and tractions of friction do.
     pub friction: bool,
-    /// The column of tractions that are carried from step to step, in formulations that do.
+    /// The column of history tractions, in formulations that have them.
     pub history_traction: Option<&'static Variable<[f64; 3]>>,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! R_i = ∫ N_i (Q − ρc v·∇T) − k ∇N_i·∇T + ρc (v·∇N_i) s. The subscale s is the part of T that the mesh does not resolve: s = τ (r + ρc
 //! π), r = Q − ρc (∂T/∂t + v·∇T), 1/τ = ρc (β/Δt + 2|v|/h) + 4k/h²; π is zero, or minus the projection of r/ρc onto the mesh
-//! (orthogonal subscales). Dynamic subscales go on in time: β is 1, s = τ (r + ρc (π + s₀/Δt)), and ∫ N_i ρc (s − s₀)/Δt is taken off
+//! (orthogonal subscales). Dynamic subscales evolve in time: β is 1, s = τ (r + ρc (π + s₀/Δt)), and ∫ N_i ρc (s − s₀)/Δt is taken off
 //! R. ∂T/∂t is the mean rate since the beginning of the step. Codina, Principe and Avila (2011).
 
 use std::marker::PhantomData;
@@ -25,9 +25,9 @@ use crate::material::{Material, properties_of};
 /// Value of the step data: how far the present stage is from the beginning of the step to its end.
 pub const STAGE: &str = "RUNGE_KUTTA_STAGE";
 
-/// Whether subscales go on in time.
+/// Whether subscales evolve in time.
 pub trait Subscales: Send + Sync + 'static {
-    /// Whether an element remembers them.
+    /// Whether an element has a history of them.
     const DYNAMIC: bool;
 }
 

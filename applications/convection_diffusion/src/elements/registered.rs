@@ -44,7 +44,7 @@ impl Subscales for QuasiStatic {
     const DYNAMIC: bool = false;
 }
 
-/// Subscales that go on in time.
+/// Subscales that evolve in time.
 pub struct Dynamic;
 
 impl Subscales for Dynamic {

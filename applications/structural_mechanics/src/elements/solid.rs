@@ -269,7 +269,7 @@ where
         Ok(())
     }
 
-    /// A law that remembers as many numbers is taken to be the same.
+    /// A law with as many numbers of history is taken to be the same.
     fn inherit(&self, state: &mut Box<[f64]>, earlier: &Box<[f64]>) {
         if state.len() == earlier.len() {
             state.copy_from_slice(earlier);

@@ -5,7 +5,7 @@
 //! E/(l σ_y²) − ½; linear, d = (1 − 1/κ)/(1 − l σ_y²/(2 E G)). d does not fall and stays below 1, so that a broken point still holds
 //! its nodes in place.
 //!
-//! The point remembers κ and d.
+//! The history of a point is κ and d.
 //!
 //! As in Kratos, where asked for: d stays below 0.99999, κ is q σ_y(T₀)/σ_y(T)² in the formulas of d alone, and stress across the plane does not count.
 

@@ -9,7 +9,7 @@
 //! D_AB = (∂τ_A/∂ε_B − 2 τ_A δ_AB)/(λ_A² λ_B²), γ_AB = 2 (s_A − s_B)/(λ_A² − λ_B²). Flow by the exponential map:
 //! G ← Σ exp(2 (kept − 1) dev ε_A) M_A ⊗ M_A, which keeps det G = 1. Only C enters, so the law does not see rotations.
 //!
-//! The point remembers G − 1 (xx yy zz xy yz xz) and α.
+//! The history of a point is G − 1 (xx yy zz xy yz xz) and α.
 
 use crate::laws::LawEntry;
 use zelus_core::diagnostics::Result;

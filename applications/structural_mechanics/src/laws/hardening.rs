@@ -4,7 +4,7 @@
 //! (EXPONENTIAL_SATURATION_YIELD_STRESS − YIELD_STRESS)(1 − exp(−HARDENING_EXPONENT α)).
 //! HARDENING_CURVE 3 is constant, 4 a polynomial up to a strain and constant or straight after it, 6 a broken line through
 //! points. After the last strain of curves 4 and 6 the yield stress stays (Kratos softens there by FRACTURE_ENERGY); the
-//! curves 0, 1, 2 and 5, which soften all along, are refused: their answer depends on the mesh.
+//! curves 0, 1, 2 and 5, which soften all along, are refused: results depend on the mesh.
 
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::model::{Properties, PropertyValue};

@@ -35,7 +35,7 @@ pub struct StrainState<'a, const S: usize> {
 }
 
 impl<'a, const S: usize> StrainState<'a, S> {
-    /// A point that is not strained, remembers nothing and has the temperature 0.
+    /// A point without strain and history, at the temperature 0.
     pub const REST: Self = Self {
         strain: [0.0; S],
         f: IDENTITY,
@@ -124,7 +124,7 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
         1.0
     }
 
-    /// How many numbers the law remembers of a point; all 0 before the first step.
+    /// Numbers of history of a point; all 0 before the first step.
     fn history(&self) -> usize {
         0
     }
@@ -132,7 +132,7 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
     /// History of the law after a step accepted in `state`, whose history is that before the step.
     fn advance(&self, _state: &StrainState<'_, S>, _history: &mut [f64]) {}
 
-    /// Appends a variable that the law remembers, or derives from it; whether it knows the name.
+    /// Appends a variable of the history, or one derived from it; whether the law knows the name.
     fn internal(&self, _state: &StrainState<'_, S>, _variable: &str, _out: &mut Vec<f64>) -> bool {
         false
     }

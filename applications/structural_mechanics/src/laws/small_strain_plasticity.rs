@@ -4,7 +4,7 @@
 //! return: D = K 1⊗1 + 2μ (kept (I − 1⊗1/3) − lost n⊗n). Plane strain keeps ε_zz = 0 and all of ε_p. In elements of
 //! finite deformation ε is Green–Lagrange's and σ the second Piola–Kirchhoff stress: for small strains, large rotations.
 //!
-//! The point remembers ε_p (tensor components xx yy zz xy yz xz) and α.
+//! The history of a point is ε_p (tensor components xx yy zz xy yz xz) and α.
 
 use crate::laws::LawEntry;
 use zelus_core::diagnostics::Result;

@@ -232,7 +232,7 @@ impl Stage {
         self.advance_to(target, run).map(|()| true)
     }
 
-    /// Finalises the processes, also after a step that has failed, or suspends them where the stage goes on later; the states of
+    /// Finalises the processes, also after a step that has failed, or suspends them where the stage is restarted later; the states of
     /// elements go to `systems`.
     ///
     /// # Errors
