@@ -11,13 +11,13 @@ register_variable! {
     pub LAGRANGE_MULTIPLIER_CONTACT_PRESSURE: f64 = "Normal contact pressure divided by SCALE_FACTOR, negative in compression.";
     pub VECTOR_LAGRANGE_MULTIPLIER: [f64; 3] = "Contact traction on the slave divided by SCALE_FACTOR, along the outward normal of the slave in tension.";
     pub SCALAR_LAGRANGE_MULTIPLIER: f64 = "Multiplier of a tied scalar.";
-    pub KEPT_CONTACT_PRESSURE: f64 = "Normal contact pressure that Uzawa's iteration keeps between updates, negative in compression (force per area).";
+    pub KEPT_CONTACT_PRESSURE: f64 = "Uzawa pressure: normal contact pressure between two updates of Uzawa's iteration, negative in compression (force per area).";
     pub WEIGHTED_GAP: f64 = "Gap integrated with the dual shape function of a slave node, negative in penetration (length times area).";
     pub WEIGHTED_SLIP: [f64; 3] = "Slip of the step integrated with the dual shape function of a slave node (length times area).";
     pub WEIGHTED_SCALAR_RESIDUAL: f64 = "Residual of a tied scalar, integrated with dual shape functions.";
     pub WEIGHTED_VECTOR_RESIDUAL: [f64; 3] = "Residual of a tied vector, integrated with dual shape functions.";
-    pub FRICTION_TRACTION: [f64; 3] = "Tangential traction on a slave node by the penalty method, carried from step to step (force per area).";
-    pub CARRIED_TRACTION: [f64; 3] = "Tangential traction of contact less that of the slave's body by Nitsche's method, carried from step to step (force per area).";
+    pub FRICTION_TRACTION: [f64; 3] = "History traction of the penalty method: tangential traction on a slave node (force per area).";
+    pub CARRIED_TRACTION: [f64; 3] = "History traction of Nitsche's method: tangential traction of contact less that of the slave's body (force per area).";
     pub NORMAL_GAP: f64 = "Gap along the normal of a slave node, negative in penetration (length).";
     pub NODAL_AREA: f64 = "Area (length in the plane) of contact that belongs to a slave node.";
     pub NODAL_H: f64 = "Distance to the nearest node that shares an element (length).";

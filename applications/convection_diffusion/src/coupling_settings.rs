@@ -20,7 +20,7 @@ const USUAL: StaggeredSettings = StaggeredSettings { tolerance: 1e-6, most: 30 }
 pub(crate) enum CouplingStrategy {
     /// Once each, heat first.
     Sequential,
-    /// Staggered: alternately until the temperatures stay.
+    /// Staggered: alternately until the temperatures converge.
     Staggered(StaggeredSettings),
     /// In one Newton's iteration.
     Monolithic,
@@ -43,7 +43,7 @@ impl CouplingStrategy {
 }
 
 register! { SolverExtensionEntry "coupling_settings",
-    about: "how heat and a structure are solved together within a step",
+    about: "coupling of heat and structure within a step: staggered, sequential or monolithic",
     defaults: include_str!("../../../configs/solvers/coupling_settings.json"),
     like: &[("kratos", include_str!("../../../configs/like_kratos/coupling_settings.json"))],
     build: ExtensionDefinition {

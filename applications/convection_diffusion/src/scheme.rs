@@ -20,7 +20,7 @@ impl Scheme for ThetaScheme {
 }
 
 register! { SchemeEntry SCHEME,
-    about: "heat: elements store it themselves, by the weights of both ends of a step",
+    about: "heat: elements contain the rate themselves, by the θ method",
     source: "ρc (T − T₀)/Δt = θ f(T) + (1 − θ) f(T₀)",
     build: SchemeFactory::Implicit(|_| Ok(Box::new(ThetaScheme))),
 }

@@ -1,4 +1,4 @@
-//! Staggered coupling of heat and a structure within a step, until the temperatures stay: `coupling_settings`, "staggered".
+//! Staggered coupling of heat and a structure within a step, until the temperatures converge: `coupling_settings`, "staggered".
 //!
 //! A sweep solves for heat from the start of the step, on the mesh and with the contact that the structure has just found: T̃ =
 //! H(S(T)), where T are the temperatures that the structure was solved with. The step ends where T̃ differs from T by no more than the

@@ -18,7 +18,7 @@ register_variable! {
     kind AMBIENT_TEMPERATURE: Scalar = "Temperature of the surroundings of a face.";
     kind CONVECTION_COEFFICIENT: Scalar = "Heat through a face by difference to AMBIENT_TEMPERATURE (power per area and temperature).";
     kind EMISSIVITY: Scalar = "Share of black radiation that a face gives off and takes up.";
-    kind TAYLOR_QUINNEY_COEFFICIENT: Scalar = "Share of plastic work that heats the body, times what brings work to the units of heat.";
+    kind TAYLOR_QUINNEY_COEFFICIENT: Scalar = "Share of plastic work that heats the body, times the factor from the unit of work to that of heat.";
     kind STEFAN_BOLTZMANN_CONSTANT: Scalar = "Black radiation over the fourth power of temperature, in the units of the deck; 5.67e-8 W/(m² K⁴) where it is not given.";
 }
 

@@ -77,7 +77,7 @@ register_variable! {
     kind EQUIVALENT_PLASTIC_STRAIN: Scalar = "Equivalent plastic strain ∫ √(2/3) ‖dε_p‖.";
     kind ACCUMULATED_PLASTIC_STRAIN: Scalar = "The same number as EQUIVALENT_PLASTIC_STRAIN.";
     kind PLASTIC_STRAIN_VECTOR: Vector = "Plastic strain (logarithmic under finite strain), components as STRAIN.";
-    kind UNIAXIAL_STRESS: Scalar = "What yielding or damage compares: von Mises stress of the whole Kirchhoff stress, or the equivalent stress of the undamaged (force per area).";
+    kind UNIAXIAL_STRESS: Scalar = "Stress that yielding or damage compares: von Mises stress of the whole Kirchhoff stress, or the equivalent stress of the undamaged (force per area).";
     kind CAUCHY_STRESS_VECTOR: Vector = "Cauchy stress: xx yy (zz) xy (yz xz) (force per area).";
     kind PK2_STRESS_VECTOR: Vector = "Second Piola–Kirchhoff stress, components as CAUCHY_STRESS_VECTOR.";
     kind KIRCHHOFF_STRESS_VECTOR: Vector = "Kirchhoff stress det F σ, components as CAUCHY_STRESS_VECTOR.";

@@ -312,7 +312,7 @@ impl SolutionStrategy for ArcLength {
 }
 
 register! { StrategyEntry "arc_length",
-    about: "follows the path of equilibrium by its length, through points where the load falls",
+    about: "arc-length method: the load factor is an unknown, and the equilibrium path passes limit points",
     source: "Riks 1979; Ramm 1981",
     defaults: DEFAULTS,
     build: |request| {

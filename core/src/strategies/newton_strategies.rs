@@ -1,16 +1,16 @@
-//! Registered names of Newton's iteration: with whole increments, and with a line search.
+//! Registered names of Newton's method: with full increments, and with a line search.
 
 use super::line_search::{DEFAULTS, LineSearch};
 use super::strategy_entry::StrategyEntry;
 use crate::register;
 
 register! { StrategyEntry "newton_raphson",
-    about: "Newton's iteration with whole increments",
+    about: "Newton's method with full increments",
     build: |request| Ok(Box::new(request.newton()?)),
 }
 
 register! { StrategyEntry "line_search",
-    about: "Newton's iteration that takes the part of each increment where its work on the residual is small",
+    about: "Newton's method with line search: the share of each increment at which its work on the residual is small",
     defaults: DEFAULTS,
     build: |mut request| {
         // One linear solve takes its increment whole.

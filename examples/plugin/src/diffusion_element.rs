@@ -16,7 +16,7 @@ use zelus_core::{register, register_rates, register_variable};
 register_variable! {
     pub CONCENTRATION: f64 = "Amount that diffuses, per volume.";
     pub CONCENTRATION_RATE: f64 = "Change of CONCENTRATION per time.";
-    pub CONCENTRATION_SUPPLY: f64 = "What a prescribed node gives to the body (amount per time).";
+    pub CONCENTRATION_SUPPLY: f64 = "Supply of a prescribed node to the body (amount per time).";
     kind DIFFUSIVITY: Scalar = "Flux per gradient of CONCENTRATION.";
     kind STORAGE: Scalar = "Amount per volume and CONCENTRATION that the body holds.";
 }

@@ -182,5 +182,5 @@ faces! { all; "FluxCondition", false, false,
 "f = ∫ N q" }
 
 faces! { plane; "AxisymmetricThermalFace", true, true,
-"ThermalFace of a body of revolution about the x axis: y is the radius; beside a structure about the y axis, as that",
+"ThermalFace of a body of revolution about the x axis: y is the radius; about the y axis where a structure is",
 "f = ∫ N (q + h (Tₐ − T) + ε σ (Tₐ⁴ − T⁴)) 2πy" }

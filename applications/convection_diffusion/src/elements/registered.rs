@@ -103,7 +103,7 @@ macro_rules! explicit {
 macro_rules! place {
     ($name:literal; $($suffix:literal: $nodes:literal, $dim:literal;)+) => {
         $(register! { ElementEntry concat!($name, $suffix),
-            about: "a place of the mesh without physics; a solver of heat puts its elements there",
+            about: "element without physics, in the place of which a solver of heat puts its own",
             cell: Shape::of($dim, $nodes),
             space: $dim,
             build: Build::Place,
@@ -137,7 +137,7 @@ macro_rules! on_shapes {
 }
 
 on_shapes! { all, balance; "EulerianConvDiff", ConvectionDiffusion,
-"heat that is stored, conducted and carried by VELOCITY less MESH_VELOCITY; stabilised along the flow, where asked across it",
+"transient convection and conduction of heat, by VELOCITY less MESH_VELOCITY; stabilised along the flow, on request across it",
 "ρc (∂T/∂t + v·∇T) = ∇·(k ∇T) + Q, weighted by N + τ v·∇N" }
 
 on_shapes! { all, balance; "LaplacianElement", Laplacian,
@@ -149,7 +149,7 @@ on_shapes! { all, balance; "EulerianDiffusion", Diffusion,
 "ρc (T − T*)/Δt = ∇·(k ∇(T + T*)/2) + Q" }
 
 on_shapes! { plane, balance; "AxisymmetricEulerianConvectionDiffusion", Revolution,
-"EulerianConvDiff of a body of revolution about the x axis: y is the radius, heat is that of the whole ring; beside a structure about the y axis, as that",
+"EulerianConvDiff of a body of revolution about the x axis: y is the radius, heat is that of the whole ring; about the y axis where a structure is",
 "ρc (∂T/∂t + v·∇T) = (1/y) ∇·(y k ∇T) + Q, weighted by N + τ v·∇N" }
 
 explicit! { "QSConvectionDiffusionExplicit", QuasiStatic,

@@ -9,7 +9,7 @@ use crate::scheme::SCHEME;
 pub(super) const EXPLICIT_TRANSIENT: &str = "ExplicitTransient";
 
 register! { SolverEntry EXPLICIT_TRANSIENT,
-    about: "what \"transient\" is with \"time_integration_method\": \"explicit\": short steps without a linear system",
+    about: "as \"transient\" with \"time_integration_method\": \"explicit\": short steps without a linear system",
     defaults: include_str!("../../../../configs/solvers/explicit_transient.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/explicit_transient.json"))],
     build: SolverDefinition {

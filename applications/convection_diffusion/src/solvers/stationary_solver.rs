@@ -1,4 +1,4 @@
-//! The solver of heat at rest.
+//! The solver of steady-state heat transfer.
 
 use zelus_core::analysis::{SolverDefinition, SolverEntry};
 use zelus_core::register;
@@ -8,7 +8,7 @@ use crate::scheme::SCHEME;
 
 register! { SolverEntry "stationary",
     aliases: &["Stationary"],
-    about: "heat at rest at each time; with elements that store heat, a step of the implicit Euler scheme: let it be long",
+    about: "steady-state heat transfer at each time; with elements that store heat, a step of the implicit Euler scheme, which must be long",
     defaults: include_str!("../../../../configs/solvers/stationary.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/stationary.json"))],
     build: SolverDefinition {

@@ -1,4 +1,4 @@
-//! The solver of heat in time.
+//! The solver of transient heat transfer.
 
 use zelus_core::analysis::{SolverDefinition, SolverEntry};
 use zelus_core::parameters::Node;
@@ -12,7 +12,7 @@ use crate::semi_implicit::SEMI_IMPLICIT;
 
 register! { SolverEntry "transient",
     aliases: &["Transient"],
-    about: "heat in time: stored, conducted, carried and exchanged",
+    about: "transient heat transfer: storage, conduction, convection, exchange with the surroundings",
     defaults: include_str!("../../../../configs/solvers/transient.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/transient.json"))],
     build: SolverDefinition {

@@ -8,7 +8,7 @@ use zelus_core::model::Properties;
 use crate::laws::{ConstitutiveLaw, LawFactory, MakesLaw, law_of};
 use crate::variables::VOLUME_ACCELERATION;
 
-/// Why a law that expands has no answer.
+/// Reason why a law with thermal expansion has no solution.
 pub(super) const NO_TEMPERATURE: &str =
     "its law expands with TEMPERATURE, which nodes do not have: solve for heat, too";
 

@@ -225,7 +225,7 @@ macro_rules! damage {
             damage! { @forms "SmallStrainIsotropicDamage", $surface, $word, false,
                 "constants YOUNG_MODULUS, POISSON_RATIO, YIELD_STRESS, FRACTURE_ENERGY, SOFTENING_TYPE 0 (linear) or 1 (exponential)" }
             damage! { @forms "SmallStrainThermalIsotropicDamage", $surface, $word, true,
-                "expands; constants of SmallStrainIsotropicDamage, THERMAL_EXPANSION_COEFFICIENT, REFERENCE_TEMPERATURE; tables over TEMPERATURE act" }
+                "thermal expansion; constants of SmallStrainIsotropicDamage, THERMAL_EXPANSION_COEFFICIENT, REFERENCE_TEMPERATURE; reads tables over TEMPERATURE" }
         )+
     };
     (@forms $name:literal, $surface:ident, $word:literal, $expands:literal, $needs:literal) => {

@@ -179,7 +179,7 @@ struct ExpandingBar {
 }
 
 impl ExpandingBar {
-    /// The law of bars `name` that expands.
+    /// The law of bars `name` with thermal expansion.
     ///
     /// # Errors
     /// Constants that are missing or out of range.
@@ -199,7 +199,7 @@ impl BarLaw for ExpandingBar {
     }
 }
 
-/// The law `name` that expands.
+/// The law `name` with thermal expansion.
 ///
 /// # Errors
 /// Constants that are missing or out of range.
@@ -211,7 +211,7 @@ where
     Ok(Expanding { law: make(properties)?, expansion: Expansion::of(properties)? })
 }
 
-/// Registers a law that expands under the name of another with "Thermal" before it.
+/// Registers a law with thermal expansion under the name of another with "Thermal" before it.
 macro_rules! register_expanding {
     ($($kind:ident $name:literal)*) => { $( register_expanding! { @ $kind $name } )* };
     (@ space $name:literal) => { register_expanding! { $name,
@@ -229,7 +229,7 @@ macro_rules! register_expanding {
         LawFactory::Axisymmetric(|properties| Ok(Box::new(expanding::<4>($name, false, properties)?))) } };
     ($name:literal, $build:expr) => {
         register! { LawEntry concat!("Thermal", $name),
-            about: concat!($name, " that expands; needs THERMAL_EXPANSION_COEFFICIENT and REFERENCE_TEMPERATURE beside its properties"),
+            about: concat!($name, " with thermal expansion; needs THERMAL_EXPANSION_COEFFICIENT and REFERENCE_TEMPERATURE beside its properties"),
             source: "ε_m = ε − α (T − T₀) 1 under small strain, F = (1 + α (T − T₀)) F_m else; Lu and Pister, Int. J. Solids Structures 11 (1975)",
             build: $build,
         }

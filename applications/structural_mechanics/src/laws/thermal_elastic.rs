@@ -66,13 +66,13 @@ impl<const S: usize, const STRESS_FREE: bool> ConstitutiveLaw<S> for ThermalElas
 }
 
 register! { LawEntry "ThermalElasticIsotropic3D",
-    about: "Hooke's law that expands; needs THERMAL_EXPANSION_COEFFICIENT, REFERENCE_TEMPERATURE; tables over TEMPERATURE act",
+    about: "Hooke's law with thermal expansion; needs THERMAL_EXPANSION_COEFFICIENT, REFERENCE_TEMPERATURE; reads tables over TEMPERATURE",
     source: "σ = D (ε − α (T − T₀) 1)",
     build: LawFactory::Space(|properties| Ok(Box::new(ThermalElastic::<6, false>::new(properties)?))),
 }
 
 register! { LawEntry "ThermalLinearPlaneStrain",
-    about: "Hooke's law of plane strain that expands; constants of ThermalElasticIsotropic3D",
+    about: "Hooke's law of plane strain with thermal expansion; constants of ThermalElasticIsotropic3D",
     source: "σ = D (ε − α (T − T₀) 1) with ε_zz = 0",
     build: LawFactory::PlaneStrain {
         plane: |properties| Ok(Box::new(ThermalElastic::<3, false>::new(properties)?)),
@@ -81,13 +81,13 @@ register! { LawEntry "ThermalLinearPlaneStrain",
 }
 
 register! { LawEntry "ThermalLinearPlaneStress",
-    about: "Hooke's law of plane stress that expands; constants of ThermalElasticIsotropic3D",
+    about: "Hooke's law of plane stress with thermal expansion; constants of ThermalElasticIsotropic3D",
     source: "σ = D (ε − α (T − T₀) 1) with σ_zz = 0",
     build: LawFactory::PlaneStress(|properties| Ok(Box::new(ThermalElastic::<3, true>::new(properties)?))),
 }
 
 register! { LawEntry "ThermalLinearAxisym",
-    about: "Hooke's law with axial symmetry that expands; constants of ThermalElasticIsotropic3D",
+    about: "Hooke's law with axial symmetry and thermal expansion; constants of ThermalElasticIsotropic3D",
     source: "σ = D (ε − α (T − T₀) 1) on (rr, zz, tt, rz)",
     build: LawFactory::Axisymmetric(|properties| Ok(Box::new(ThermalElastic::<4, false>::new(properties)?))),
 }

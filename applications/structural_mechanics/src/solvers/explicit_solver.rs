@@ -4,7 +4,7 @@ use zelus_core::analysis::{SolverDefinition, SolverEntry};
 use zelus_core::register;
 
 register! { SolverEntry "ExplicitDynamic",
-    about: "what \"Dynamic\" is with \"time_integration_method\": \"explicit\": short steps without iterations",
+    about: "as \"Dynamic\" with \"time_integration_method\": \"explicit\": short steps without iterations",
     defaults: include_str!("../../../../configs/solvers/explicit_dynamic.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/explicit_dynamic.json"))],
     build: SolverDefinition {

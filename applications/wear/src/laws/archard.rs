@@ -18,7 +18,7 @@ impl WearLaw for Archard {
 }
 
 register! { WearLawEntry "archard",
-    about: "depth by pressure and way of sliding over the hardness",
+    about: "worn depth: pressure times sliding distance over hardness",
     source: "K/H p s; Archard (1953)",
     defaults: include_str!("../../../../configs/wear_laws/archard.json"),
     build: |settings| {
