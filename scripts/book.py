@@ -16,7 +16,7 @@ SOURCES = os.path.join(ROOT, "target", "book-sources")
 def objects(program):
     """A page of every registered object."""
     say = lambda *words: subprocess.run([program, *words], capture_output=True, text=True, check=True).stdout
-    page, kind = ["# Every registered object\n", "What decks, meshes and materials may name, as `zelus describe NAME` prints it.\n"], ""
+    page, kind = ["# Every registered object\n", "Names that decks, meshes and materials may use, as `zelus describe NAME` prints them.\n"], ""
     shown = set()
     for line in say("list").splitlines():
         if not line.startswith(" "):

@@ -279,7 +279,7 @@ class AnalysisStage:
             self._pass_on()
 
     def _pass_on(self):
-        """Goes on from a stop: processes come to their end, what else was left out by a hook is not done."""
+        """Continues from a stop: processes come to their end, other actions that a hook left out are not done."""
         what = "act" if self._at == ("at", "finalize") else None
         self._stopping(lambda: self._driving.go(what))
 

@@ -10,7 +10,7 @@ from . import _zelus
 from .errors import Problem, ZelusWarning, error_of
 from .progress import Progress
 
-# Seconds between two looks at signals.
+# Seconds between two checks for signals.
 _PAUSE = 0.05
 
 
@@ -37,19 +37,19 @@ class Driving:
             raise error_of(str(error)) from None
 
     def do(self, command):
-        """Begins to "prepare", "step" or "finish", and goes on to the next stop."""
+        """Begins to "prepare", "step" or "finish", and continues to the next stop."""
         self.session.command(command)
         return self.next()
 
     def go(self, what=None, error=None):
-        """Answers at a stop, and goes on to the next one."""
+        """Answers at a stop, and continues to the next one."""
         self.session.answer(what=what, error=error)
         return self.next()
 
     def next(self):
         """The next stop: ("at", point) before what is done there, ("acted", point) after it, ("idle", more) after a command.
 
-        Raises what ended the run.
+        Raises the error that ended the run.
         """
         while True:
             kind, *more = self._wait()

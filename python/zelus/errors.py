@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Problem:
-    """One problem of the input: its code, where it is, what is the case, what to do."""
+    """One problem of the input: code, place, fact and remedy."""
 
     code: str
     severity: str
@@ -31,7 +31,7 @@ class Problem:
 
 
 class ZelusError(Exception):
-    """A run that did not come to its end; `result` holds what converged before, `None` where nothing was run."""
+    """A run that did not come to its end; `result` holds the converged steps, `None` where nothing was run."""
 
     def __init__(self, text, problems=(), result=None):
         super().__init__(text)

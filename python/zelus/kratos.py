@@ -1,7 +1,7 @@
-"""The name `KratosMultiphysics` for programs and processes written for Kratos: what they use most of it, over zelus.
+"""The module `KratosMultiphysics` for programs and processes written for Kratos: its most used part, by zelus.
 
-It is there once `install()` has been called, or while the processes of a deck are imported; what of Kratos is not here raises
-an error that names it.
+It exists once `install()` has been called, or while the processes of a deck are imported; a missing name of Kratos raises an
+error that names it.
 """
 
 from __future__ import annotations

@@ -14,7 +14,7 @@ _REGISTERED = {}
 
 
 class Process:
-    """Something done at fixed points of the loop; what is not overridden does nothing."""
+    """Something done at fixed points of the loop; hooks that are not overridden do nothing."""
 
     def ExecuteInitialize(self):
         """Mesh and materials are read, the solver is not ready yet."""
@@ -38,7 +38,7 @@ class Process:
         """After the last step, also when a step failed."""
 
     def Check(self):
-        """All is ready; raises what is wrong."""
+        """All is ready; raises an error where the process cannot run."""
         return 0
 
     def IsOutputStep(self):
