@@ -1,4 +1,4 @@
-//! Extreme eigenvalues of a system, for its condition number.
+//! Extreme eigenvalues of a system, for its condition number κ = |λ_max|/|λ_min| (eqs. 4.18b, D.23).
 
 use nalgebra::{DMatrix, SymmetricEigen};
 

@@ -69,3 +69,36 @@ fn links_between_documents_lead_somewhere() {
     }
     assert!(missing.is_empty(), "{}", missing.join("\n"));
 }
+
+/// Numbers of equations in a cell of a table or a sentence: `4.9`, `D.12`; letters are left out, a range counts with both ends.
+fn equations_named(text: &str) -> Vec<String> {
+    let word = |c: char| c.is_ascii_alphanumeric() || c == '.';
+    let numbers = text.split(|c: char| !word(c)).filter_map(|token| {
+        let (chapter, number) = token.split_once('.')?;
+        let number = number.trim_end_matches(|c: char| !c.is_ascii_digit());
+        (matches!(chapter, "4" | "D") && number.parse::<u8>().is_ok()).then(|| format!("{chapter}.{number}"))
+    });
+    numbers.collect()
+}
+
+/// The table of equations leads to pages and files that state the equation under its number.
+#[test]
+fn equations_stand_where_their_table_says() {
+    let folder = root().join("docs/theory");
+    let table = std::fs::read_to_string(folder.join("equations.md")).expect("the table");
+    let mut problems = Vec::new();
+    let mut count = 0;
+    for row in table.lines().filter(|line| line.starts_with("| ") && line.contains("](")) {
+        let cells: Vec<&str> = row.trim_matches('|').split(" | ").collect();
+        let equations = equations_named(cells[0]);
+        for target in row.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next()) {
+            let text = std::fs::read_to_string(folder.join(target)).unwrap_or_else(|e| panic!("{target}: {e}"));
+            let stated = equations_named(&text);
+            count += equations.len();
+            let missing = equations.iter().filter(|equation| !stated.contains(equation));
+            problems.extend(missing.map(|equation| format!("{target} does not state eq. {equation}")));
+        }
+    }
+    assert!(count > 80, "hardly any equation is listed");
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}

@@ -44,6 +44,35 @@ fn every_name_says_what_it_is_and_where_it_lives() {
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
+/// Kinds of input, output and settings, which no equation defines.
+const WITHOUT_MATHEMATICS: [&str; 5] = ["mesh_format", "modeler", "output_format", "process", "solver_extension"];
+
+/// What computes cites its formula or its literature; equations of the specification are those of the table in `docs/theory`.
+#[test]
+fn mathematics_cites_its_source() {
+    let table = std::fs::read_to_string(root().join("docs/theory/equations.md")).expect("the table");
+    let first_cells = table.lines().filter_map(|line| line.strip_prefix("| ")?.split(" | ").next());
+    let listed: String = first_cells.map(|cell| cell.replace('–', "–, ")).collect::<Vec<_>>().join(", ");
+    let mut problems = Vec::new();
+    for (kind, entry) in entries() {
+        let place = format!("{kind} {} ({}:{})", entry.name, entry.file, entry.line);
+        let computes = !WITHOUT_MATHEMATICS.contains(&kind) && !entry.about.contains("without physics");
+        if computes && entry.source.is_empty() {
+            problems.push(format!("{place} cites nothing"));
+        }
+        for sentence in entry.source.split(';').filter(|sentence| sentence.contains("eq. ") || sentence.contains("eqs. ")) {
+            let numbers = sentence.split([' ', ',']).filter(|word| word.starts_with("D.") || word.starts_with("4."));
+            for number in numbers.map(|word| word.split('–').next().unwrap_or(word)) {
+                let number = number.trim_end_matches(|c: char| c.is_ascii_lowercase());
+                if !listed.split(", ").any(|known| known.trim_end_matches(|c: char| !c.is_ascii_digit()) == number) {
+                    problems.push(format!("{place}: eq. {number} is not in docs/theory/equations.md"));
+                }
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
+}
+
 /// Settings that `--like` gives must be settings that the object takes.
 #[test]
 fn defaults_of_other_programs_are_settings() {

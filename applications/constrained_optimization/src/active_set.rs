@@ -1,4 +1,4 @@
-//! The active-set strategies of the Lagrange multiplier method (eq. D.5d).
+//! The active-set strategies of the Lagrange multiplier method (eqs. D.5d, D.5e; of one spring D.18–D.20).
 //!
 //! 1: g ≤ 0. 2: λ ≤ 0. 3: g ≤ 0 or λ < 0. The third is printed with λ ≤ 0; then λ = 0 would close every wall that was
 //! never touched, and Table D.10 would not follow the path of Table D.8.

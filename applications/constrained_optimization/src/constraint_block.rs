@@ -1,4 +1,4 @@
-//! Constraints of one method as a block: residual −∂ℓ and tangent ∂²ℓ over positions and multipliers.
+//! Constraints of one method as a block: residual −∂ℓ and tangent ∂²ℓ over positions and multipliers (eq. D.2).
 
 use std::ops::Range;
 use zelus_core::model::EntityKind;

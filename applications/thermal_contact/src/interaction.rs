@@ -30,7 +30,10 @@ const NAME: &str = "thermal contact";
 /// Conditions of the pairs, without their shapes.
 const STEM: &str = "ContactConductanceCondition";
 
-register_pair_conditions! { "ContactConductanceCondition", "heat between two facets that face each other" }
+register_pair_conditions! { "ContactConductanceCondition",
+    about: "heat between two facets that face each other",
+    source: "∫ h (T₁ − T₂)(δT₁ − δT₂) over mortar pairs"
+}
 
 /// Settings of a deck.
 pub struct ThermalContactSettings {

@@ -134,6 +134,7 @@ macro_rules! register_bdf {
         register! { SchemeEntry $name,
             aliases: $aliases,
             about: $about,
+            source: "v_{n+1} = Σ c_k u_{n+1−k}; Curtiss and Hirschfelder (1952)",
             build: SchemeFactory::Implicit(|request| Ok(Box::new(BdfScheme::new($order, request.rayleigh()?)))),
         }
     };

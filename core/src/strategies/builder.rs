@@ -28,9 +28,11 @@ registered_kind! {
 register! { BuilderEntry "block",
     aliases: &["block_lagrange"],
     about: "fixities and constraints are eliminated; results do not depend on the builder",
+    source: "TᵀK T Δ = Tᵀb, eqs. D.12d, D.12e",
     build: BuilderAction::Direct,
 }
 register! { BuilderEntry "elimination",
     about: "fixities and constraints are eliminated; results do not depend on the builder",
+    source: "TᵀK T Δ = Tᵀb, eqs. D.12d, D.12e",
     build: BuilderAction::Direct,
 }

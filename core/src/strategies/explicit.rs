@@ -350,5 +350,6 @@ impl SolutionStrategy for ExplicitStrategy {
 
 register! { SchemeEntry "central_differences",
     about: "explicit central differences with a lumped mass, for \"time_integration_method\": \"explicit\"",
+    source: "M a = f_ext − f_int(u) − C v; Belytschko, Liu and Moran, Nonlinear Finite Elements, box 6.1",
     build: SchemeFactory::Explicit(|_| Ok(CentralDifferences::default())),
 }

@@ -194,40 +194,48 @@ fn krylov(request: &LinearSolverRequest<'_>) -> Result<KrylovSettings> {
 register! { PreconditionerEntry "ilu0",
     aliases: &["ilu", "ILU0Preconditioner", "ILUPreconditioner"],
     about: "incomplete LU on the pattern of the matrix",
+    source: "Meijerink and van der Vorst (1977)",
     build: Preconditioner::Ilu0,
 }
 register! { PreconditionerEntry "diagonal",
     aliases: &["DiagonalPreconditioner"],
     about: "inverses of the diagonal blocks of the nodes",
+    source: "block Jacobi; Saad, Iterative Methods for Sparse Linear Systems, § 4.1",
     build: Preconditioner::BlockJacobi,
 }
 register! { PreconditionerEntry "none",
     aliases: &["None", "Preconditioner"],
     about: "no preconditioner",
+    source: "M = I",
     build: Preconditioner::Identity,
 }
 register! { LinearSolverEntry "sparse_lu",
     aliases: &["skyline_lu_factorization", "pardiso_lu", "pardiso_ldlt", "pardiso_llt", "sparse_cg", "sparse_qr",
         "super_lu", "SuperLUSolver", "LUSkylineFactorizationSolver", "umfpack", "mumps", "direct"],
     about: "multifrontal factorisation; the interface of contact in a dense Schur complement",
+    source: "Duff and Reid (1983)",
     build: direct,
 }
 register! { LinearSolverEntry "automatic",
     about: "the fastest one: factorisation of small systems, multigrid for large ones",
+    source: "sources of sparse_lu and amgcl",
     build: automatic,
 }
 register! { LinearSolverEntry "amgcl",
     aliases: &["AMGCL", "amgcl_raw", "multigrid", "deflated_cg"],
     about: "smoothed-aggregation multigrid with rigid-body modes, for conjugate gradients or GMRES",
+    source: "Vaněk, Mandel and Brezina (1996); GMRES: Saad (1993)",
     build: multigrid,
 }
 register! { LinearSolverEntry "cg",
     aliases: &["CGSolver", "conjugate_gradient"],
     about: "conjugate gradients with incomplete LU; GMRES where contact leaves no symmetry, with condensed multipliers",
+    source: "Hestenes and Stiefel (1952)",
     build: |request| Ok(create(Engine::ConjugateGradient(krylov(request)?))),
 }
 register! { LinearSolverEntry "gmres",
     aliases: &["bicgstab", "BICGSTABSolver", "tfqmr", "TFQMRSolver"],
     about: "restarted GMRES with incomplete LU; multipliers of contact are condensed",
+    source: "Saad and Schultz (1986)",
     build: |request| Ok(create(Engine::Gmres { krylov: krylov(request)?, restart: 100 })),
 }

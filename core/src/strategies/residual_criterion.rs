@@ -11,6 +11,7 @@ register! { CriterionEntry "residual_criterion",
 }
 register! { CriterionEntry "and_criterion",
     about: "both residual_criterion and displacement_criterion",
+    source: "formulas of both criteria",
     build: |request| {
         let [residual, increment] = [Form::Residual, Form::Increment].map(|form| Measure::of_all(request.settings, form));
         Ok(both(Box::new(residual?), Box::new(increment?)))
@@ -18,6 +19,7 @@ register! { CriterionEntry "and_criterion",
 }
 register! { CriterionEntry "or_criterion",
     about: "residual_criterion or displacement_criterion",
+    source: "formulas of both criteria",
     build: |request| {
         let [residual, increment] = [Form::Residual, Form::Increment].map(|form| Measure::of_all(request.settings, form));
         Ok(either(Box::new(residual?), Box::new(increment?)))

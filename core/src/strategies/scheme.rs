@@ -169,5 +169,6 @@ registered_kind! {
 
 register! { SchemeEntry "static",
     about: "no inertia: time is the load factor",
+    source: "f_int(u) = f_ext(t)",
     build: SchemeFactory::Implicit(|_| Ok(Box::new(StaticScheme))),
 }

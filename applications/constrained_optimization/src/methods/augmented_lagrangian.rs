@@ -1,5 +1,6 @@
-//! Augmented Lagrangian: ℓ = kλ g + ε/2 g² while λ̄ = kλ + εg ≤ 0, and −(kλ)²/2ε otherwise (eqs. D.8d, 4.9).
+//! Augmented Lagrangian: ℓ = kλ g + ε/2 g² while λ̄ = kλ + εg ≤ 0, and −(kλ)²/2ε otherwise (eqs. D.8d, 4.9, D.22).
 //!
+//! Gradient (eqs. D.8e, D.24): λ̄ and k g, otherwise 0 and −k²λ/ε; its derivative is the Hessian (eqs. D.9, D.24).
 //! The set follows from λ̄, so no strategy has to be chosen. Adapted (AALM), ε follows the gap by Algorithm 7.
 
 use serde::Deserialize;

@@ -1,4 +1,6 @@
-//! Lagrange multiplier: ℓ = λ g while the constraint acts (eq. D.5b), nothing otherwise (eq. D.5d).
+//! Lagrange multiplier: ℓ = λ g while the constraint acts (eqs. D.5b, D.15), nothing otherwise (eq. D.5d).
+//!
+//! Its Hessian has a zero on the diagonal of each multiplier (eq. D.6b).
 
 use serde::Deserialize;
 use zelus_core::processes::ProcessEntry;

@@ -1,4 +1,5 @@
-//! Penalty: ℓ = ε/2 ⟨−g⟩² (eq. D.1b), and its adapted form, in which ε follows the penetration (eq. D.4).
+//! Penalty: ℓ = ε/2 ⟨−g⟩² with Macaulay's bracket (eqs. 4.10, D.1b, D.3c, D.14, D.27), and its adapted form, in which ε follows the
+//! penetration (eq. D.4).
 
 use serde::Deserialize;
 use zelus_contact_structural_mechanics::adaptation::adapted_penalty;

@@ -59,24 +59,29 @@ fn single(request: &CriterionRequest<'_>, primary: Form, multiplier: Form) -> Re
 
 register! { CriterionEntry "contact_residual_criterion",
     about: "residuals of displacements and of multipliers small",
+    source: "formula of residual_criterion, of multipliers with the tolerances contact_residual_… of contact_settings",
     build: |request| single(request, Form::Residual, Form::Residual),
 }
 register! { CriterionEntry "contact_displacement_criterion",
     about: "increments of displacements and of multipliers small",
+    source: "formula of displacement_criterion, of multipliers with the tolerances contact_displacement_… of contact_settings",
     build: |request| single(request, Form::Increment, Form::Increment),
 }
 register! { CriterionEntry "contact_mixed_criterion",
     about: "residual of displacements and increment of multipliers small",
+    source: "formula of residual_criterion, of multipliers that of displacement_criterion with the tolerances contact_displacement_… of contact_settings",
     build: |request| single(request, Form::Residual, Form::Increment),
 }
 register! { CriterionEntry "contact_and_criterion",
     about: "both contact_residual_criterion and contact_displacement_criterion",
+    source: "formulas of both criteria",
     build: |request| {
         Ok(both(single(request, Form::Residual, Form::Residual)?, single(request, Form::Increment, Form::Increment)?))
     },
 }
 register! { CriterionEntry "contact_or_criterion",
     about: "contact_residual_criterion or contact_displacement_criterion",
+    source: "formulas of both criteria",
     build: |request| {
         Ok(either(single(request, Form::Residual, Form::Residual)?, single(request, Form::Increment, Form::Increment)?))
     },

@@ -96,12 +96,12 @@ pub fn find_friction_law(name: &str) -> Result<&'static FrictionLaw, Diagnostic>
 
 register! { FrictionLawEntry "Coulomb",
     about: "limit of the tangential traction: FRICTION_COEFFICIENT times the pressure",
-    source: "eq. 4.1",
+    source: "|t| ≤ −μ p; Coulomb (1785)",
     build: COULOMB,
 }
 register! { FrictionLawEntry "Tresca",
     about: "limit of the tangential traction: TRESCA_FRICTION_THRESHOLD, whatever the pressure",
-    source: "eq. 4.1",
+    source: "|t| ≤ τ_max; Tresca (1864)",
     build: TRESCA,
 }
 

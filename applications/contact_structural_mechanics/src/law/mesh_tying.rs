@@ -1,7 +1,7 @@
-//! Tying of non-matching meshes by multipliers: b = −k [ −Mᵀλ ; Dᵀλ ; D u¹ − M u² ].
+//! Tying of non-matching meshes by multipliers: b = −k [ −Mᵀλ ; Dᵀλ ; D u¹ − M u² ] (eqs. D.5c, D.7).
 //!
 //! D and M are those of the moment the pair was made, and u are total values, so initial gaps are kept. The residual is
-//! linear and its tangent K = k [ 0 0 −Mᵀ ; 0 0 Dᵀ ; −M D 0 ] constant and symmetric.
+//! linear and its tangent K = k [ 0 0 −Mᵀ ; 0 0 Dᵀ ; −M D 0 ] constant and symmetric (eq. D.6b).
 
 use crate::mortar::Operators;
 

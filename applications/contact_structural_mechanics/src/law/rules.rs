@@ -5,7 +5,8 @@
 //! bound that the law of friction sets under p̂. A sticking node slides when its traction k P λ is more than the bound; κ c s counts
 //! only for nodes that enter. A sliding node, which is at the bound by its own equation, sticks again when its slip has turned against
 //! its traction: then q̂ is below the bound, however small κ c s is. So the states of a solution do not depend on κ. The smallest
-//! numbers that decide are those of [`crate::tolerances`].
+//! numbers that decide are those of [`crate::tolerances`]. Without friction a state that keeps its set obeys the conditions of Hertz,
+//! Signorini and Moreau (eq. D.3a): g = 0 and λ_n ≤ 0, or g ≥ 0 and λ_n = 0.
 
 use super::friction_law::Bound;
 use super::node_state::NodeState;

@@ -163,12 +163,12 @@ const fn formulation(friction: Friction) -> Formulation {
 
 register_contact_formulation! { "ALMContactFrictional",
     about: "Coulomb friction, augmented Lagrangian, one multiplier a slave node and direction",
-    source: "eq. 4.9, D.11, D.13",
+    source: "normal: eqs. 4.9, D.11; friction: Alart and Curnier (1991), Gitterle, Popp, Gee and Wall (2010)",
     conditions: ["ALMFrictionalMortarContactCondition", "ALMFrictionalAxisymMortarContactCondition"],
     build: formulation(Friction::Coulomb),
 }
 register_contact_formulation! { "ALMContactFrictionalPureSlip",
     about: "ALMContactFrictional without sticking: every node in contact slides",
-    source: "eq. 4.9, D.11, D.13",
+    source: "normal: eqs. 4.9, D.11; friction: Alart and Curnier (1991), Gitterle, Popp, Gee and Wall (2010)",
     build: formulation(Friction::PureSlip),
 }

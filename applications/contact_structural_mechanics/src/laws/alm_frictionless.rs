@@ -45,7 +45,7 @@ impl NodeLaw for AlmFrictionless {
 
 register_contact_formulation! { "ALMContactFrictionless",
     about: "frictionless contact, augmented Lagrangian, one multiplier a slave node along its normal",
-    source: "eq. 4.9, D.11",
+    source: "eqs. 4.9, D.11",
     conditions: ["ALMFrictionlessMortarContactCondition", "ALMFrictionlessAxisymMortarContactCondition"],
     build: Formulation {
         weighted_gaps: true,

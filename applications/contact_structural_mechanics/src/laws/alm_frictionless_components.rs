@@ -44,7 +44,7 @@ impl NodeLaw for AlmFrictionlessComponents {
 
 register_contact_formulation! { "ALMContactFrictionlessComponents",
     about: "frictionless contact, augmented Lagrangian, one multiplier a slave node and direction",
-    source: "eq. 4.9, D.11 by components",
+    source: "eqs. 4.9, D.11 by components",
     conditions: [
         "ALMFrictionlessComponentsMortarContactCondition", "ALMFrictionlessComponentsAxisymMortarContactCondition"
     ],

@@ -2,4 +2,4 @@
 
 use crate::register_pair_conditions;
 
-register_pair_conditions! { "MPCMortarContactCondition", "pair of contact by constraints" }
+register_pair_conditions! { "MPCMortarContactCondition", about: "pair of contact by constraints", source: "eqs. D.12a–e" }

@@ -102,7 +102,7 @@ static EXPLICIT: Formulation = Formulation {
 
 register_contact_formulation! { "PenaltyContactFrictional",
     about: "Coulomb friction, penalty method",
-    source: "eq. D.3",
+    source: "normal: eq. D.3; friction: Wriggers, Vu Van and Stein (1990)",
     conditions: ["PenaltyFrictionalMortarContactCondition", "PenaltyFrictionalAxisymMortarContactCondition"],
     build: Formulation { by_node: Some(ByNode { implicit: &IMPLICIT, explicit: &EXPLICIT }), ..BY_PAIR },
 }

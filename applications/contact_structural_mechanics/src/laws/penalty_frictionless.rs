@@ -1,4 +1,4 @@
-//! Frictionless contact by the penalty method (eq. D.3d), pair by pair as in Kratos: p = f ε g̃ n on active nodes.
+//! Frictionless contact by the penalty method (eqs. D.3b, D.3d), pair by pair as in Kratos: p = f ε g̃ n on active nodes.
 //!
 //! ε g̃ holds an area: it counts the weighted gap of the pair.
 

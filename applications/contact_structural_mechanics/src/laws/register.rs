@@ -15,8 +15,8 @@ macro_rules! register_contact_formulation {
         conditions: [$stem:literal, $axisymmetric:literal], build: $formulation:expr $(,)?
     ) => {
         $crate::register_contact_formulation! { $name, about: $about, source: $source, build: $formulation }
-        $crate::register_pair_conditions! { $stem, concat!("pair of the formulation ", $name) }
-        $crate::register_pair_conditions! { @ $axisymmetric, concat!("pair of the formulation ", $name),
+        $crate::register_pair_conditions! { $stem, about: concat!("pair of the formulation ", $name), source: $source }
+        $crate::register_pair_conditions! { @ $axisymmetric, concat!("pair of the formulation ", $name), $source,
             (Line2, 2, "2D2N") (Line2, 2, "2D2N3N") (Line3, 2, "2D3N2N") (Line3, 2, "2D3N")
         }
     };
@@ -25,8 +25,8 @@ macro_rules! register_contact_formulation {
 /// Registers conditions that pairs are named by, one for each two shapes of facets: slave, master and the end of the name.
 #[macro_export]
 macro_rules! register_pair_conditions {
-    ($stem:literal, $about:expr) => {
-        $crate::register_pair_conditions! { @ $stem, $about,
+    ($stem:literal, about: $about:expr, source: $source:literal) => {
+        $crate::register_pair_conditions! { @ $stem, $about, $source,
             (Line2, 2, "2D2N") (Line2, 2, "2D2N3N") (Line3, 2, "2D3N2N") (Line3, 2, "2D3N")
             (Tri3, 3, "3D3N") (Tri3, 3, "3D3N4N") (Tri3, 3, "3D3N6N") (Tri3, 3, "3D3N8N") (Tri3, 3, "3D3N9N")
             (Quad4, 3, "3D4N3N") (Quad4, 3, "3D4N") (Quad4, 3, "3D4N6N") (Quad4, 3, "3D4N8N") (Quad4, 3, "3D4N9N")
@@ -35,11 +35,12 @@ macro_rules! register_pair_conditions {
             (Quad9, 3, "3D9N3N") (Quad9, 3, "3D9N4N") (Quad9, 3, "3D9N6N") (Quad9, 3, "3D9N8N") (Quad9, 3, "3D9N")
         }
     };
-    (@ $stem:literal, $about:expr, $(($slave:ident, $space:literal, $end:literal))*) => {$(
+    (@ $stem:literal, $about:expr, $source:literal, $(($slave:ident, $space:literal, $end:literal))*) => {$(
         const _: () = {
             use zelus_core::entities::ConditionEntry;
             zelus_core::register! { ConditionEntry concat!($stem, $end),
                 about: $about,
+                source: $source,
                 cell: Some(zelus_core::geometry::Shape::$slave),
                 space: $space,
                 build: zelus_core::entities::Build::Pairs,

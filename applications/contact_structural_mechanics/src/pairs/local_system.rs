@@ -1,4 +1,4 @@
-//! Local systems of a pair: the right-hand side of a law, and its exact tangent.
+//! Local systems of a pair: the right-hand side of a law, and its exact tangent (eq. D.2).
 //!
 //! Order of local unknowns: displacements of master nodes, displacements of slave nodes, multipliers of slave nodes; node by node,
 //! each with its components. The law states forces and rows at each slave node; b_slave += Dᵀp and b_master −= Mᵀp stand here.

@@ -115,6 +115,7 @@ fn check_unknown(settings: &Settings, part: &ModelPart, tied: ScalarVariable) ->
 register! { ProcessEntry "mesh_tying_process",
     aliases: &["MeshTyingProcess"],
     about: "ties meshes that do not match by multipliers on mortar pairs",
+    source: "eqs. D.5, D.7 of an equality; D and M: Wohlmuth (2000)",
     defaults: include_str!("../../../../configs/processes/mesh_tying_process.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/mesh_tying_process.json"))],
     build: build,

@@ -261,6 +261,7 @@ impl Process for Mapper {
 register! { ProcessEntry "simple_mortar_mapper_process",
     aliases: &["SimpleMortarMapperProcess", "basic_mapping_process", "BasicMappingProcess"],
     about: "maps a nodal variable between two surfaces that face each other, by dual mortar",
+    source: "D φ¹ = M φ²; Wohlmuth (2000)",
     defaults: include_str!("../../../../configs/processes/simple_mortar_mapper_process.json"),
     build: build,
     surfaces: super::touching::mapping,

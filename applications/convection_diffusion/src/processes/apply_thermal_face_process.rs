@@ -94,6 +94,7 @@ impl Process for ApplyThermalFace {
 register! { ProcessEntry "apply_thermal_face_process",
     aliases: &["ApplyThermalFaceProcess"],
     about: "lets faces exchange heat with their surroundings: convection, radiation",
+    source: "q = h (Tₐ − T) + ε σ (Tₐ⁴ − T⁴)",
     defaults: include_str!("../../../../configs/processes/apply_thermal_face_process.json"),
     build: build,
 }

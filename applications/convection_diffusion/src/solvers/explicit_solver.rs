@@ -10,6 +10,7 @@ pub(super) const EXPLICIT_TRANSIENT: &str = "ExplicitTransient";
 
 register! { SolverEntry EXPLICIT_TRANSIENT,
     about: "as \"transient\" with \"time_integration_method\": \"explicit\": short steps without a linear system",
+    source: "ρc (∂T/∂t + v·∇T) = ∇·(k ∇T) + Q",
     defaults: include_str!("../../../../configs/solvers/explicit_transient.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/explicit_transient.json"))],
     build: SolverDefinition {

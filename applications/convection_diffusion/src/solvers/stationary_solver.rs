@@ -9,6 +9,7 @@ use crate::scheme::SCHEME;
 register! { SolverEntry "stationary",
     aliases: &["Stationary"],
     about: "steady-state heat transfer at each time; with elements that store heat, a step of the implicit Euler scheme, which must be long",
+    source: "ρc v·∇T = ∇·(k ∇T) + Q",
     defaults: include_str!("../../../../configs/solvers/stationary.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/stationary.json"))],
     build: SolverDefinition {

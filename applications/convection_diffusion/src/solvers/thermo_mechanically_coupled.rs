@@ -76,6 +76,7 @@ fn rename(node: &mut Node, from: &str, to: &str) {
 register! { SolverEntry "thermo_mechanically_coupled",
     aliases: &["ThermoMechanicallyCoupled"],
     about: "heat and mechanics on one mesh, staggered in each step, heat first, until temperatures converge",
+    source: "equations of the solvers of heat and of the structure",
     defaults: include_str!("../../../../configs/solvers/thermo_mechanically_coupled.json"),
     build: SolverDefinition {
         scheme: |_| Ok(SCHEME.to_owned()),

@@ -13,6 +13,7 @@ use crate::semi_implicit::SEMI_IMPLICIT;
 register! { SolverEntry "transient",
     aliases: &["Transient"],
     about: "transient heat transfer: storage, conduction, convection, exchange with the surroundings",
+    source: "ρc (∂T/∂t + v·∇T) = ∇·(k ∇T) + Q",
     defaults: include_str!("../../../../configs/solvers/transient.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/transient.json"))],
     build: SolverDefinition {

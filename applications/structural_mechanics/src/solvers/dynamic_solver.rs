@@ -11,6 +11,7 @@ pub(super) const VARIABLES: [NodalVariable; 10] = {
 register! { SolverEntry "Dynamic",
     aliases: &["dynamic"],
     about: "motion with inertia, integrated in time by a scheme",
+    source: "M a + C v + f_int(u) = f_ext(t)",
     defaults: include_str!("../../../../configs/solvers/dynamic.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/dynamic.json"))],
     build: SolverDefinition {

@@ -5,6 +5,7 @@ use zelus_core::register;
 
 register! { SolverEntry "ExplicitDynamic",
     about: "as \"Dynamic\" with \"time_integration_method\": \"explicit\": short steps without iterations",
+    source: "M a + C v + f_int(u) = f_ext(t)",
     defaults: include_str!("../../../../configs/solvers/explicit_dynamic.json"),
     like: &[("kratos", include_str!("../../../../configs/like_kratos/explicit_dynamic.json"))],
     build: SolverDefinition {

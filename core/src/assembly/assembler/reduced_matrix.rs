@@ -4,7 +4,7 @@ use zelus_linear_algebra::Csr;
 
 use crate::assembly::Equations;
 
-/// TᵀA T of a matrix A over all unknowns, with the stamps of graph and values of A that it is of.
+/// TᵀA T of a matrix A over all unknowns (eq. D.12e), with the stamps of graph and values of A that it is of.
 #[derive(Default)]
 pub(super) struct ReducedMatrix {
     matrix: Csr,
