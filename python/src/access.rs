@@ -8,6 +8,7 @@ use zelus::core::model::{
     EntityRole, EntityTable, Fields, Flags, ModelPart, Named, PropertyValue, ScalarVariable, SubPart, VariableEntry,
     VariableKind, flags, named, variables,
 };
+use zelus::core::registry;
 
 use crate::buffer::Buffer;
 use crate::line::Lent;
@@ -36,7 +37,7 @@ pub(crate) fn names() -> (Vec<String>, Vec<&'static str>) {
         let axes = if entry.kind == VariableKind::Vector3 { &["", "_X", "_Y", "_Z"][..] } else { &[""] };
         axes.iter().map(|axis| format!("{}{axis}", entry.name)).collect::<Vec<_>>()
     };
-    (variables().values().copied().flat_map(names).collect(), flags::flag_names())
+    (variables().values().copied().flat_map(names).collect(), registry::names::<flags::FlagEntry>())
 }
 
 /// Whether there is a flag of that name.
@@ -320,7 +321,7 @@ impl Session {
 
     /// Sets, unsets or undefines a flag.
     fn set_flag(&self, path: &str, kind: &str, at: usize, name: &str, state: Option<bool>) -> PyResult<()> {
-        let name = flags::flag(name).map_err(PyKeyError::new_err)?;
+        let name = flags::flag(name).map_err(|problem| PyKeyError::new_err(problem.to_string()))?;
         self.with(|lent| {
             let flags = flags_mut(root_mut(lent, path)?, kind)?;
             match state {

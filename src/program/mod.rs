@@ -4,6 +4,7 @@ mod catalogue;
 mod diff;
 mod example;
 mod html;
+mod keys;
 mod kratos_names;
 mod log;
 mod matching;
@@ -103,7 +104,7 @@ enum Command {
     },
     /// Print the manual page: zelus manual > zelus.1.
     Manual,
-    /// Describe a name of decks: meaning, settings with defaults, example, source file.
+    /// Describe a name: an object with its settings and source, a variable, a flag, or a key of a deck.
     Describe {
         /// The name, as a deck would write it.
         name: String,

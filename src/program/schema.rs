@@ -18,6 +18,12 @@ pub(super) enum Of {
     Materials,
 }
 
+/// Outlines of the schemas, to which the registry adds its objects: the file that each describes, and its text.
+pub(super) const OUTLINES: [(&str, &str); 2] = [
+    ("ProjectParameters.json", include_str!("../../configs/schema/deck.json")),
+    ("StructuralMaterials.json", include_str!("../../configs/schema/materials.json")),
+];
+
 /// Keys whose value is a registered name, with its kind.
 const NAMES: [(&str, &str); 6] = [
     ("scheme_type", "scheme"),
@@ -40,7 +46,7 @@ pub(super) fn schema(of: Of) -> Result<Value> {
 }
 
 fn deck() -> Result<Value> {
-    let mut schema = outline(include_str!("../../configs/schema/deck.json"));
+    let mut schema = outline(OUTLINES[0].1);
     let definitions = schema["$defs"].as_object_mut().expect("the outline has definitions");
     definitions.insert("variable".to_owned(), variable());
     for kind in ["process", "modeler", "solver", "solver_extension", "strategy", "linear_solver"] {
@@ -99,7 +105,7 @@ fn deck() -> Result<Value> {
 }
 
 fn materials() -> Result<Value> {
-    let mut schema = outline(include_str!("../../configs/schema/materials.json"));
+    let mut schema = outline(OUTLINES[1].1);
     let definitions = schema["$defs"].as_object_mut().expect("the outline has definitions");
     let law = json!({
         "type": "object",

@@ -44,10 +44,11 @@ fn every_name_says_what_it_is_and_where_it_lives() {
     assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
-/// Kinds of input, output and settings, which no equation defines.
-const WITHOUT_MATHEMATICS: [&str; 5] = ["mesh_format", "modeler", "output_format", "process", "solver_extension"];
+/// Kinds of names, input, output and settings, which no equation defines.
+const WITHOUT_MATHEMATICS: [&str; 7] =
+    ["flag", "mesh_format", "modeler", "output_format", "process", "solver_extension", "variable"];
 
-/// What computes cites its formula or its literature; equations of the specification are those of the table in `docs/theory`.
+/// Objects that compute cite their formula or literature; equations of the specification are those of the table in `docs/theory`.
 #[test]
 fn mathematics_cites_its_source() {
     let table = std::fs::read_to_string(root().join("docs/theory/equations.md")).expect("the table");
@@ -60,10 +61,12 @@ fn mathematics_cites_its_source() {
         if computes && entry.source.is_empty() {
             problems.push(format!("{place} cites nothing"));
         }
-        for sentence in entry.source.split(';').filter(|sentence| sentence.contains("eq. ") || sentence.contains("eqs. ")) {
+        for sentence in
+            entry.source.split(';').filter(|sentence| sentence.contains("eq. ") || sentence.contains("eqs. "))
+        {
             let numbers = sentence.split([' ', ',']).filter(|word| word.starts_with("D.") || word.starts_with("4."));
             for number in numbers.map(|word| word.split('–').next().unwrap_or(word)) {
-                let number = number.trim_end_matches(|c: char| c.is_ascii_lowercase());
+                let number = number.trim_end_matches(|c: char| !c.is_ascii_digit());
                 if !listed.split(", ").any(|known| known.trim_end_matches(|c: char| !c.is_ascii_digit()) == number) {
                     problems.push(format!("{place}: eq. {number} is not in docs/theory/equations.md"));
                 }
@@ -112,6 +115,7 @@ fn known_names_that_are_not_there_say_what_to_use_instead() {
         ("scheme", "relaxation", "pseudo_static"),
         ("scheme", "multi_stage", "central_differences"),
         ("solver", "eigen_value", "Static"),
+        ("variable", "MAX_GAP_FACTOR", "max_gap_factor"),
     ] {
         let said = require_of(kind, name).expect_err(name).to_string();
         assert!(said.contains(words), "{name}: no {words:?} in {said}");
@@ -154,6 +158,7 @@ fn names_of_the_reference_program_are_answered() {
         "SimpleMortarMapperProcess",
         "ALMFrictionlessMortarContactCondition",
         "ALMContactProcess",
+        "alm_variables_calculation_process",
     ];
     for name in listed.iter().map(|(name, _)| name.as_str()).chain(asked) {
         let output = zelus(&root(), &["describe", name]);
@@ -193,4 +198,51 @@ fn describe_shows_an_example_of_every_kind_of_object() {
     assert_eq!(json("bossak")["solver_settings"]["scheme_type"], "bossak");
     assert_eq!(json("LinearElastic3DLaw")["Material"]["constitutive_law"]["name"], "LinearElastic3DLaw");
     assert_eq!(json("gmsh")["solver_settings"]["model_import_settings"]["input_type"], "gmsh");
+}
+
+/// Variables, flags and keys of the specification are described: as what they are, or by the setting in their place.
+#[test]
+fn names_of_the_specification_are_described() {
+    let answers = [
+        ("INITIAL_PENALTY", "variable INITIAL_PENALTY [number]"),
+        ("WEIGHTED_SLIP_X", "variable WEIGHTED_SLIP [3 components]"),
+        ("ACTIVE", "flag ACTIVE\n"),
+        ("SLAVE", "flag SLAVE\n"),
+        ("ISOLATED", "flag ISOLATED\n"),
+        ("RIGID", "which nothing reads"),
+        ("MAX_GAP_FACTOR", "set `max_gap_factor` of `advance_ALM_parameters`"),
+        ("MAX_GAP_THRESHOLD", "set `max_gap_threshold`"),
+        ("ADAPT_PENALTY", "set `adapt_penalty`"),
+        ("REACTION_CHECK_STIFFNESS_FACTOR", "set `reaction_check_stiffness_factor`"),
+        ("NODAL_PAUX", "not there; use CONTACT_PRESSURE"),
+        ("CONSTRAINT_POINTER", "not there; `mpc_contact_process` owns"),
+        ("advance_ALM_parameters", "an object with the keys manual_ALM, stiffness_factor, penalty_scale_factor"),
+        ("penalty_scale_factor", "a number, by default 1.0; above 0\n  ratio of scale factor and penalty"),
+        ("advance_ALM_parameters.max_gap_factor", "without effect unless advance_ALM_parameters.adapt_penalty is true"),
+        ("reaction_check_stiffness_factor", "a number, by default 1e-10; at least 0"),
+        ("condn_convergence_criterion", "of solver_extension contact_settings"),
+        ("last_step", "one of automatic, shortened, whole, while_below, by default \"automatic\""),
+        ("skiprows", "of table csv_table"),
+    ];
+    let mut problems = Vec::new();
+    for (name, words) in answers {
+        let text = String::from_utf8_lossy(&zelus(&root(), &["describe", name]).stdout).into_owned();
+        if !text.contains(words) {
+            problems.push(format!("{name}: no {words:?} in {text}"));
+        }
+    }
+    let all = String::from_utf8_lossy(&zelus(&root(), &["list"]).stdout).into_owned();
+    for line in [
+        "variable (",
+        "flag (",
+        "kratos_name (",
+        "  ISOLATED: ",
+        "  MAX_GAP_FACTOR…: not there; ",
+        "  MPCContactCriteria: ",
+    ] {
+        if !all.contains(line) {
+            problems.push(format!("`zelus list` has no {line:?}"));
+        }
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
 }

@@ -1,6 +1,7 @@
 //! The variables of contact.
 
-use zelus_core::{register_usual_results, register_variable};
+use zelus_core::model::VariableEntry;
+use zelus_core::{register_absent, register_usual_results, register_variable};
 
 register_usual_results! {
     values: ["CONTACT_PRESSURE", "CONTACT_TRACTION", "CONTACT_GAP", "CONTACT_SLIP", "CONTACT_STATUS", "CONTACT_FORCE"],
@@ -39,3 +40,23 @@ register_variable! {
     pub CONTACT_FORCE: [f64; 3] = "Force of contact on a node, of both sides.";
     kind SCALE_FACTOR: Scalar = "Factor that turns multipliers into tractions (eq. 4.11).";
 }
+
+// Variables of Kratos' process info and entities: settings here, or states that nothing has to pass on.
+register_absent! { VariableEntry ["ADAPT_PENALTY"] => "set `adapt_penalty` of `advance_ALM_parameters`: true adapts the penalty node by node" }
+register_absent! { VariableEntry ["MAX_GAP_FACTOR"] =>
+"set `max_gap_factor` of `advance_ALM_parameters`: allowed gap of the adaptation, in mesh sizes (NODAL_H)" }
+register_absent! { VariableEntry ["MAX_GAP_THRESHOLD"] =>
+"set `max_gap_threshold` of `advance_explicit_parameters`, with `manual_max_gap_theshold`: gap at which the explicit penalty has grown" }
+register_absent! { VariableEntry ["REACTION_CHECK_STIFFNESS_FACTOR"] =>
+"set `reaction_check_stiffness_factor` of `mpc_contact_process`: pressure, in Young's moduli, below which a node is released" }
+register_absent! { VariableEntry ["NODAL_PAUX"] =>
+"use CONTACT_PRESSURE for the pressure of `mpc_contact_process`; weights of constraints need no nodal variable" }
+register_absent! { VariableEntry ["CONSTRAINT_POINTER"] =>
+"`mpc_contact_process` owns its constraints, which it makes anew in each iteration; entities hold no pointers" }
+register_absent! { VariableEntry ["CONSIDER_NORMAL_VARIATION"] => "set `normal_variation` of the contact process" }
+register_absent! { VariableEntry ["TANGENT_FACTOR"] => "set `tangent_factor` of the contact process: ratio of tangential and normal penalty" }
+register_absent! { VariableEntry ["OPERATOR_THRESHOLD"] => "set `operator_threshold` of the contact process" }
+register_absent! { VariableEntry ["ZERO_TOLERANCE_FACTOR"] => "set `zero_tolerance_factor` of the contact process" }
+register_absent! { VariableEntry ["ACTIVE_CHECK_FACTOR"] => "set `active_check_factor` of `search_parameters`" }
+register_absent! { VariableEntry ["DISTANCE_THRESHOLD"] =>
+"set `active_check_factor` of `search_parameters`: gap, in mesh sizes, below which a node starts active" }

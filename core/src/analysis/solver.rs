@@ -8,10 +8,12 @@ use super::cutting::Cutting;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Error, Report, Result};
 use crate::entities::{Interaction, find_kind};
-use crate::model::{EntityKind, EntityRole, ModelPart, MultiplierRequest, Named, Rates, SolverInfo, named};
+use crate::model::{
+    EntityKind, EntityRole, ModelPart, MultiplierRequest, Named, Rates, SolverInfo, VariableEntry, named,
+};
 use crate::parameters::{Defaults, Node, Settings, Value};
 use crate::registered_kind;
-use crate::registry::{self, Registered};
+use crate::registry::{self, Kind, Registered};
 
 use crate::strategies::{
     BodyBalance, BuilderAction, BuilderEntry, CentralDifferences, ConvergenceCriterion, CriterionEntry,
@@ -316,7 +318,7 @@ impl SolverSettings {
             let Some(variable @ Named::Whole(..)) = named(&name) else {
                 let problem =
                     self.settings.error(AUXILIARY, "unknown-variable", format!("there is no variable {name:?}"));
-                return Err(problem.remedy("`zelus list variable` shows what there is").into());
+                return Err(problem.remedy(Kind::of::<VariableEntry>().remedy(&name)).into());
             };
             let (column, _, components) = variable.column();
             part.nodes.history.add_named(column, components);

@@ -289,10 +289,7 @@ impl Import<'_> {
         if let DataColumn::Flag = block.values {
             match flag(&block.variable) {
                 Ok(name) => block.ids.iter().for_each(|&id| flags.set(name, find(id as usize) as usize, true)),
-                Err(remedy) => {
-                    let fact = format!("there is no flag {}", block.variable);
-                    self.push(block.line, Diagnostic::error("unknown-flag", fact).remedy(remedy));
-                }
+                Err(problem) => self.push(block.line, problem),
             }
             return None;
         }

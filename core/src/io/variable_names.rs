@@ -1,8 +1,8 @@
 //! Names of variables and laws as input files spell them.
 
-use crate::diagnostics::{Diagnostic, did_you_mean};
-use crate::model::{Named, VariableKind, named, variables};
-use crate::registry;
+use crate::diagnostics::Diagnostic;
+use crate::model::{Named, VariableEntry, VariableKind, named, variables};
+use crate::registry::{self, Kind};
 
 /// The kind of laws, which applications declare.
 const LAW: &str = "constitutive_law";
@@ -17,9 +17,7 @@ pub(super) fn kind_of(name: &str) -> Option<VariableKind> {
 
 /// The error that names the nearest variable; the caller adds the place.
 pub(crate) fn unknown_variable(name: &str) -> Diagnostic {
-    let remedy = did_you_mean(name, variables().keys().copied());
-    let remedy = remedy.unwrap_or_else(|| "`zelus list variable` shows the known ones".to_owned());
-    Diagnostic::error("unknown-variable", format!("there is no variable {name}")).remedy(remedy)
+    Kind::of::<VariableEntry>().unknown(name)
 }
 
 /// Why a variable that decks name has no values here; `None` when it has.

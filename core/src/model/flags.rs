@@ -1,20 +1,25 @@
 //! Flags: named marks of nodes and entities that can be set, unset or undefined.
 
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::LazyLock;
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use crate::diagnostics::did_you_mean;
-use crate::names;
+use crate::diagnostics::Diagnostic;
+use crate::registry::{self, Entry};
+use crate::{collect_kind, names};
 
-/// The registered name of a mark.
-pub struct FlagEntry(pub &'static str);
+/// The registered name and description of a mark.
+pub struct FlagEntry(pub Entry);
 
-inventory::collect!(FlagEntry);
+impl std::ops::Deref for FlagEntry {
+    type Target = Entry;
 
-static FLAGS: LazyLock<BTreeSet<&'static str>> =
-    LazyLock::new(|| inventory::iter::<FlagEntry>().map(|entry| entry.0).collect());
+    fn deref(&self) -> &Entry {
+        &self.0
+    }
+}
+
+collect_kind! { FlagEntry("flag", "unknown-flag") }
 
 /// Makes flags known by name: `register_flags! { pub SLAVE = "…about…"; }`.
 #[macro_export]
@@ -22,42 +27,35 @@ macro_rules! register_flags {
     ($($vis:vis $name:ident = $about:literal;)*) => { $(
         #[doc = $about]
         $vis const $name: &str = stringify!($name);
-        $crate::inventory::submit! { $crate::model::flags::FlagEntry(stringify!($name)) }
+        $crate::inventory::submit! { $crate::model::flags::FlagEntry($crate::registry::Entry {
+            about: $about, ..$crate::registry::Entry::new(stringify!($name), file!(), line!()) }) }
     )* };
 }
 
 register_flags! {
-    pub ACTIVE = "Takes part in the computation; undefined counts as set.";
-    pub INTERFACE = "On a surface that may come into contact.";
-    pub MARKER = "Free mark.";
-    pub BOUNDARY = "On the boundary.";
-    pub VISITED = "Free mark.";
-    pub TO_ERASE = "To be removed.";
-    pub SELECTED = "Free mark.";
-    pub BLOCKED = "Held back.";
-    pub RIGID = "Rigid.";
-    pub MODIFIED = "Changed.";
-    pub STRUCTURE = "Part of a structure.";
-    pub FLUID = "Part of a fluid.";
-    pub INTERACTION = "Interacts.";
-    pub INLET = "On an inlet.";
-    pub OUTLET = "On an outlet.";
+    pub ACTIVE = "Takes part in the computation; undefined counts as set. Of a slave node: in contact, an output.";
+    pub INTERFACE = "On a surface that may come into contact; an output.";
+    pub MARKER = "Free mark, which nothing reads.";
+    pub BOUNDARY = "On the boundary. Free mark, which nothing reads.";
+    pub VISITED = "Free mark, which nothing reads.";
+    pub TO_ERASE = "To be removed. Free mark, which nothing reads.";
+    pub SELECTED = "Free mark, which nothing reads.";
+    pub BLOCKED = "Held back. Free mark, which nothing reads.";
+    pub RIGID = "Rigid. Free mark, which nothing reads.";
+    pub MODIFIED = "Changed. Free mark, which nothing reads.";
+    pub STRUCTURE = "Part of a structure. Free mark, which nothing reads.";
+    pub FLUID = "Part of a fluid. Free mark, which nothing reads.";
+    pub INTERACTION = "Interacts. Free mark, which nothing reads.";
+    pub INLET = "On an inlet. Free mark, which nothing reads.";
+    pub OUTLET = "On an outlet. Free mark, which nothing reads.";
 }
 
-/// The registered spelling of a flag, or the words that suggest one.
+/// The registered spelling of a flag.
 ///
 /// # Errors
-/// The text of a "did you mean" when the name is not known.
-pub fn flag(name: &str) -> Result<&'static str, String> {
-    FLAGS.get(name).copied().ok_or_else(|| {
-        let known = flag_names();
-        did_you_mean(name, known.iter().copied()).unwrap_or_else(|| format!("known flags: {}", known.join(", ")))
-    })
-}
-
-/// All registered flags, sorted.
-pub fn flag_names() -> Vec<&'static str> {
-    FLAGS.iter().copied().collect()
+/// `unknown-flag`; the caller adds the place.
+pub fn flag(name: &str) -> Result<&'static str, Diagnostic> {
+    registry::require::<FlagEntry>(name).map(|entry| entry.name)
 }
 
 const UNDEFINED: i8 = -1;

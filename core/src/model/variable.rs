@@ -7,7 +7,9 @@ use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
+use crate::collect_kind;
 use crate::names::{self, Name};
+use crate::registry::{self, Entry};
 
 /// Kind of the values of a variable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -104,21 +106,33 @@ impl fmt::Display for ScalarVariable {
     }
 }
 
-/// The registered facts of a variable.
+/// The registered facts of a variable; its description has definition, unit and sign.
 #[derive(Debug)]
 pub struct VariableEntry {
-    /// The name decks use.
-    pub name: &'static str,
+    entry: Entry,
     /// Kind of its values.
     pub kind: VariableKind,
-    /// Definition, unit and sign.
-    pub about: &'static str,
 }
 
-inventory::collect!(VariableEntry);
+impl VariableEntry {
+    /// For [`crate::register_variable`].
+    pub const fn new(entry: Entry, kind: VariableKind) -> Self {
+        Self { entry, kind }
+    }
+}
+
+impl std::ops::Deref for VariableEntry {
+    type Target = Entry;
+
+    fn deref(&self) -> &Entry {
+        &self.entry
+    }
+}
+
+collect_kind! { VariableEntry("variable", "unknown-variable") }
 
 static VARIABLES: LazyLock<BTreeMap<&'static str, &'static VariableEntry>> =
-    LazyLock::new(|| inventory::iter::<VariableEntry>().map(|entry| (entry.name, entry)).collect());
+    LazyLock::new(|| registry::all::<VariableEntry>().into_iter().map(|entry| (entry.name, entry)).collect());
 
 /// All registered variables by name.
 pub fn variables() -> &'static BTreeMap<&'static str, &'static VariableEntry> {
@@ -168,16 +182,20 @@ pub fn named(name: &str) -> Option<Named> {
 #[macro_export]
 macro_rules! register_variable {
     () => {};
+    (@ $name:ident, $kind:expr, $about:literal) => {
+        $crate::inventory::submit! { $crate::model::VariableEntry::new(
+            $crate::registry::Entry { about: $about, ..$crate::registry::Entry::new(stringify!($name), file!(), line!()) },
+            $kind,
+        ) }
+    };
     (kind $name:ident : $kind:ident = $about:literal; $($rest:tt)*) => {
-        $crate::inventory::submit! { $crate::model::VariableEntry {
-            name: stringify!($name), kind: $crate::model::VariableKind::$kind, about: $about } }
+        $crate::register_variable! { @ $name, $crate::model::VariableKind::$kind, $about }
         $crate::register_variable! { $($rest)* }
     };
     ($vis:vis $name:ident : $type:ty = $about:literal; $($rest:tt)*) => {
         #[doc = $about]
         $vis static $name: $crate::model::Variable<$type> = $crate::model::Variable::new(stringify!($name));
-        $crate::inventory::submit! { $crate::model::VariableEntry {
-            name: stringify!($name), kind: <$type as $crate::model::ColumnType>::KIND, about: $about } }
+        $crate::register_variable! { @ $name, <$type as $crate::model::ColumnType>::KIND, $about }
         $crate::register_variable! { $($rest)* }
     };
 }

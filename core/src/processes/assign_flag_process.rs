@@ -22,12 +22,9 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let required = ["model_part_name", "flag_name", "entities"];
     let settings = &request.settings_with(|defaults| defaults.require(&required))?;
     let name = settings.get_str("flag_name")?;
-    let unknown = |remedy: String| {
-        settings.error("flag_name", "unknown-flag", format!("there is no flag {name:?}")).remedy(remedy)
-    };
     Ok(Box::new(AssignFlag {
         target: Target::new(settings, request.model)?,
-        flag: flags::flag(name).map_err(unknown)?,
+        flag: flags::flag(name).map_err(|problem| problem.at(settings.key_place("flag_name")))?,
         value: settings.get_bool("value")?,
         containers: Container::list(settings)?,
     }))

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use super::prescription::{Load, LoadCarrier, is_body_load, is_load};
 use crate::assembly::System;
-use crate::diagnostics::{Diagnostic, Place, Report, Result, did_you_mean};
+use crate::diagnostics::{Diagnostic, Place, Report, Result};
 use crate::model::{
-    Model, ModelPart, Named, NodeUnknown, Owner, ScalarVariable, SubPart, VariableKind, named, variables,
+    Model, ModelPart, Named, NodeUnknown, Owner, ScalarVariable, SubPart, VariableEntry, VariableKind, named,
 };
 use crate::parameters::{Defaults, Interval, Node, Settings};
-use crate::registry::Entry;
+use crate::registry::{Entry, Kind};
 
 /// Data that most processes share: a part of the model, a time span, and the place in the deck to blame.
 #[derive(Debug, Clone)]
@@ -118,10 +118,7 @@ pub fn other_problems(entry: &Entry, parameters: &Node, model: &Model) -> Vec<Di
 
 fn unknown_variable(settings: &Settings, name: &str, wanted: &str) -> Diagnostic {
     let problem = settings.error("variable_name", "unknown-variable", format!("there is no {wanted} {name:?}"));
-    match did_you_mean(name, variables().keys().copied()) {
-        Some(near) => problem.remedy(near),
-        None => problem.remedy("`zelus list variable` shows what there is"),
-    }
+    problem.remedy(Kind::of::<VariableEntry>().remedy(name))
 }
 
 /// The content of the text file that `key` names.

@@ -12,9 +12,19 @@ pub struct Absent {
 
 inventory::collect!(Absent);
 
+/// Beginnings of names of one kind that are known and not there, each with its replacement, sorted.
+pub fn absent(kind: &str) -> Vec<(&'static str, &'static str)> {
+    let all = inventory::iter::<Absent>().filter(|absent| absent.kind == kind);
+    let mut stems: Vec<_> = all.flat_map(|absent| absent.stems.iter().map(|stem| (*stem, absent.remedy))).collect();
+    stems.sort_unstable();
+    stems
+}
+
 /// Replacement of a known name that is not there; of several beginnings the longest counts.
 pub fn instead_of(kind: &str, name: &str) -> Option<&'static str> {
-    let all = inventory::iter::<Absent>().filter(|absent| absent.kind == kind);
-    let known = all.flat_map(|absent| absent.stems.iter().map(|stem| (*stem, absent.remedy)));
-    known.filter(|(stem, _)| name.starts_with(stem)).max_by_key(|(stem, _)| stem.len()).map(|(_, remedy)| remedy)
+    absent(kind)
+        .into_iter()
+        .filter(|(stem, _)| name.starts_with(stem))
+        .max_by_key(|(stem, _)| stem.len())
+        .map(|(_, remedy)| remedy)
 }

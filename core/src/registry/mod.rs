@@ -12,7 +12,7 @@ mod named;
 
 use std::collections::BTreeMap;
 
-pub use absent::{Absent, instead_of};
+pub use absent::{Absent, absent, instead_of};
 pub use entry::Entry;
 pub use named::named;
 
@@ -60,14 +60,18 @@ impl Kind {
         names
     }
 
-    /// Error for a name that is not there: the nearest names, or the replacement; the caller adds the place.
+    /// Error for a name that is not there; the caller adds the place.
     pub fn unknown(&self, name: &str) -> Diagnostic {
-        let instead = instead_of(self.word, name).map(str::to_owned);
-        let remedy = instead
-            .or_else(|| did_you_mean(name, self.names()))
-            .unwrap_or_else(|| format!("`zelus list {}` shows what there is", self.word));
         let fact = format!("there is no {} {name:?}", self.word.replace('_', " "));
-        Diagnostic::error(self.unknown, fact).remedy(remedy)
+        Diagnostic::error(self.unknown, fact).remedy(self.remedy(name))
+    }
+
+    /// Remedy for a name that is not there: the replacement, or the nearest names.
+    pub fn remedy(&self, name: &str) -> String {
+        let instead = instead_of(self.word, name).map(str::to_owned);
+        instead
+            .or_else(|| did_you_mean(name, self.names()))
+            .unwrap_or_else(|| format!("`zelus list {}` shows what there is", self.word))
     }
 }
 

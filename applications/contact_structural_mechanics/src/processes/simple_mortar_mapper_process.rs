@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::model::{Field, Model, ModelPart, Named, named};
+use zelus_core::model::{Field, Model, ModelPart, Named, VariableEntry, named};
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
+use zelus_core::registry::Kind;
 use zelus_core::{Result, State, StateMapper, register};
 use zelus_structural_mechanics::variables::NORMAL;
 
@@ -36,7 +37,7 @@ impl Quantity {
         let found = named(name).ok_or_else(|| {
             settings
                 .error(key, "unknown-variable", format!("there is no variable {name:?}"))
-                .remedy("`zelus list variable` shows what there is")
+                .remedy(Kind::of::<VariableEntry>().remedy(name))
         })?;
         let (column, offset, components) = found.column();
         Ok(Self { column, offset, components, historical: settings.get_bool(historical)? })

@@ -128,7 +128,7 @@ impl GaussQuantity {
 
 /// The flags a list of the deck names; problems go to `report`.
 pub(super) fn flag_list(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<&'static str>> {
-    each(settings, key, report, false, known_flag)
+    each(settings, key, report, false, flag)
 }
 
 /// The flag a setting names; `None` when it is empty.
@@ -140,11 +140,7 @@ pub(super) fn flag_setting(settings: &Settings, key: &str) -> Result<Option<&'st
     if name.is_empty() {
         return Ok(None);
     }
-    known_flag(name).map(Some).map_err(|problem| problem.at(settings.key_place(key)).into())
-}
-
-fn known_flag(name: &str) -> Result<&'static str, Diagnostic> {
-    flag(name).map_err(|hint| Diagnostic::error("unknown-flag", format!("there is no flag {name}")).remedy(hint))
+    flag(name).map(Some).map_err(|problem| problem.at(settings.key_place(key)).into())
 }
 
 /// An error for a variable that is known and has no values here.
