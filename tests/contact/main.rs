@@ -7,6 +7,7 @@ mod blocks;
 #[path = "../support/blocks_of_case.rs"]
 mod blocks_of_case;
 mod body_balance;
+mod calculated_parameters;
 mod condensation;
 mod corners;
 mod free_bodies;

@@ -175,7 +175,7 @@ impl Interaction for ContactInteraction {
         if self.acting {
             let settings = &self.contact.setup.settings;
             if let Some(explicit) = settings.explicit {
-                let (given, weighted) = (settings.manual.is_some(), settings.weighted_penalty);
+                let (given, weighted) = (settings.given.penalty.is_some(), settings.weighted_penalty);
                 let revolution = self.contact.setup.parameters.segmentation.revolution();
                 let (states, interfaces) = (&mut self.contact.states, &self.contact.pairing.interfaces);
                 let (most, factor) = (1.0 + explicit.most, settings.solver.delta_time_factor);

@@ -23,7 +23,7 @@ pub use facets::{
 pub use fixed::{Fixed, fixed_components};
 pub use nodal_h::find_nodal_h;
 pub use normals::{FacetCorner, NodalNormals, NormalPatches, nodal_normals};
-pub use parameters::{AlmParameters, alm_parameters};
+pub use parameters::{AlmParameters, GivenParameters, alm_parameters};
 pub use patches::{FEATURE_ANGLE, Patches};
 pub use sections::unlike_sections;
 pub use slave_index::SlaveIndex;

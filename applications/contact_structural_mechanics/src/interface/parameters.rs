@@ -1,12 +1,13 @@
 //! The estimate of penalty and scale factor from the stiffness of the bodies (eq. 4.11).
 //!
-//! ε = k = factor · E_mean / h_mean on each side, the means weighted by the area of the facets; the smaller side counts.
+//! ε = k = factor · E_mean / h_mean on each side, the means weighted by the area of the facets; the smaller side counts. A side
+//! without facets does not count, nor does a slave side without Young's modulus.
 
-use zelus_core::model::ModelPart;
+use zelus_core::model::{ModelPart, ProcessInfo};
 
 use super::facet::Roles;
 use super::facets::Interface;
-use crate::variables::NODAL_H;
+use crate::variables::{INITIAL_PENALTY, NODAL_H};
 
 /// Penalty and scale factor of an interface, force per length cubed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,6 +24,45 @@ impl AlmParameters {
     pub fn with_floors(self, least_penalty: f64) -> Self {
         let or = |number: f64, floor: f64| if number > 0.0 { number } else { floor };
         Self { penalty: or(self.penalty, least_penalty), scale_factor: or(self.scale_factor, 1.0) }
+    }
+}
+
+/// Numbers that take the place of the estimate of a contact process: manual ones, and those of another process.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct GivenParameters {
+    /// INITIAL_PENALTY, ε.
+    pub penalty: Option<f64>,
+    /// SCALE_FACTOR, k.
+    pub scale_factor: Option<f64>,
+}
+
+/// Names of the numbers of a process beside those of contact, in the process info.
+const CALCULATED: [&str; 2] = ["CALCULATED_PENALTY", "CALCULATED_SCALE_FACTOR"];
+
+impl GivenParameters {
+    /// Writes the numbers into the process info, as INITIAL_PENALTY and SCALE_FACTOR and for the processes of contact.
+    pub fn write(self, info: &mut ProcessInfo) {
+        let results = [INITIAL_PENALTY.name(), "SCALE_FACTOR"];
+        for ((calculated, result), number) in CALCULATED.into_iter().zip(results).zip([self.penalty, self.scale_factor])
+        {
+            if let Some(number) = number {
+                info.values.extend([(calculated, number), (result, number)]);
+            }
+        }
+    }
+
+    /// These numbers, or in their place those that a process has written.
+    #[must_use]
+    pub fn or_written(self, info: &ProcessInfo) -> Self {
+        let [penalty, scale_factor] = CALCULATED.map(|name| info.values.get(name).copied());
+        Self { penalty: penalty.or(self.penalty), scale_factor: scale_factor.or(self.scale_factor) }
+    }
+
+    /// Removes written numbers, at the end of a stage.
+    pub fn forget(info: &mut ProcessInfo) {
+        for name in CALCULATED {
+            info.values.remove(name);
+        }
     }
 }
 
@@ -45,11 +85,14 @@ pub fn alm_parameters(
             stiffness += young * size;
             length += size / facet.nodes.len() as f64 * facet.nodes.iter().map(|&n| sizes[n as usize]).sum::<f64>();
         }
-        if area > 0.0 && length > 0.0 { (stiffness / area, stiffness_factor * stiffness / length) } else { (0.0, 0.0) }
+        (area > 0.0 && length > 0.0).then_some((stiffness, stiffness_factor * stiffness / length))
     };
-    let ((young, slave), (_, master)) = (side(Roles::Slave), side(Roles::Master));
-    let slave = if young <= 0.0 { master } else { slave };
-    let penalty = slave.min(master);
+    let slave = side(Roles::Slave).filter(|(stiffness, _)| *stiffness > 0.0).map(|(_, penalty)| penalty);
+    let master = side(Roles::Master).map(|(_, penalty)| penalty);
+    let penalty = match (slave, master) {
+        (Some(slave), Some(master)) => slave.min(master),
+        (slave, master) => slave.or(master).unwrap_or(0.0),
+    };
     AlmParameters { penalty, scale_factor: penalty_scale_factor * penalty }
 }
 
@@ -93,6 +136,19 @@ mod tests {
         assert_eq!(found(Some(100.0), Some(10.0)), 20.0);
         assert_eq!(found(None, Some(10.0)), 20.0);
         assert_eq!(found(Some(100.0), None), 0.0);
+    }
+
+    #[test]
+    fn written_numbers_take_the_place_of_given_ones() {
+        let mut info = ProcessInfo::default();
+        let manual = GivenParameters { penalty: Some(7.0), scale_factor: Some(5.0) };
+        assert_eq!(manual.or_written(&info), manual);
+        GivenParameters { penalty: None, scale_factor: Some(4.0) }.write(&mut info);
+        assert_eq!(info.values.get("SCALE_FACTOR"), Some(&4.0));
+        assert_eq!(info.values.get("INITIAL_PENALTY"), None);
+        assert_eq!(manual.or_written(&info), GivenParameters { penalty: Some(7.0), scale_factor: Some(4.0) });
+        GivenParameters::forget(&mut info);
+        assert_eq!(manual.or_written(&info), manual);
     }
 
     #[test]

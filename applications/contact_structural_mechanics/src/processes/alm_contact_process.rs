@@ -17,7 +17,7 @@ use crate::adaptation::{AdaptationSettings, ExplicitPenalty, PenaltyRule, UzawaS
 use crate::compatibility::{FormulationUse, Refusal, refusal};
 use crate::friction::FrictionSettings;
 use crate::interaction::ContactInteraction;
-use crate::interface::{AlmParameters, NodalNormals, check_parts};
+use crate::interface::{GivenParameters, NodalNormals, check_parts};
 use crate::law::{Augmentation, Margin, Nitsche, NitscheVariant, NormalVariation};
 use crate::mortar::OperatorThreshold;
 use crate::pairs::{Formulation, find_formulation};
@@ -235,10 +235,10 @@ fn interaction(
         simple_search: whole.search_parameters.simple_search,
         adapt_search: whole.search_parameters.adapt_search,
         database_step_update: whole.search_parameters.database_step_update.max(1),
-        manual: whole.parameters.manual.then_some(AlmParameters {
-            penalty: whole.parameters.penalty,
-            scale_factor: whole.parameters.scale_factor,
-        }),
+        given: GivenParameters {
+            penalty: whole.parameters.manual.then_some(whole.parameters.penalty),
+            scale_factor: whole.parameters.manual.then_some(whole.parameters.scale_factor),
+        },
         estimate: [whole.parameters.stiffness_factor, whole.parameters.penalty_scale_factor],
         penalty_factor: formulations.penalty_factor,
         least_penalty: formulations.least_penalty,

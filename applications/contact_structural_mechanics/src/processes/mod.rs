@@ -1,6 +1,7 @@
 //! The processes of contact.
 
 mod alm_contact_process;
+mod alm_variables_calculation_process;
 mod explicit_penalty_contact_process;
 mod facing_surfaces;
 mod friction_settings;

@@ -22,6 +22,12 @@ pub(super) fn mapping(parameters: Option<&Node>) -> Vec<NamedSurface> {
     vec![NamedSurface::Parts { both: [origin, slaves.clone()].concat(), slaves }]
 }
 
+/// The part of which penalty and scale factor are estimated.
+pub(super) fn estimated(parameters: Option<&Node>) -> Vec<NamedSurface> {
+    let part = parameters.and_then(|parameters| parameters.get("model_part_name")).map(names);
+    part.into_iter().map(|both| NamedSurface::Parts { both, slaves: Vec::new() }).collect()
+}
+
 /// The parts of each pair under a key of the settings; the whole skin where none is named.
 fn by_pair(parameters: Option<&Node>, key: &str) -> Vec<NamedSurface> {
     let pairs = parameters.and_then(|parameters| parameters.get(key)).and_then(Node::as_object);

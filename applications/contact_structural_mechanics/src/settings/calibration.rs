@@ -38,12 +38,14 @@ pub(crate) fn calibrate(
     // Only penalties of weighted gaps hold an area.
     let pairwise = settings.formulation.weighted_gaps && settings.augmentation == Augmentation::Pair;
     let weighted = pairwise || settings.weighted_penalty;
-    let mut chosen = settings.manual.unwrap_or(AlmParameters {
-        penalty: estimate.penalty * settings.penalty_factor / if weighted { unit.measure } else { 1.0 },
-        scale_factor: estimate.scale_factor,
-    });
+    let estimated = estimate.penalty * settings.penalty_factor / if weighted { unit.measure } else { 1.0 };
+    let given = settings.given;
+    let mut chosen = AlmParameters {
+        penalty: given.penalty.unwrap_or(estimated),
+        scale_factor: given.scale_factor.unwrap_or(estimate.scale_factor),
+    };
     chosen = chosen.with_floors(settings.least_penalty);
-    if settings.weighted_penalty && settings.manual.is_none() {
+    if settings.weighted_penalty && given.penalty.is_none() {
         messages.extend(unit.warning());
     }
     // Without factors, which a deck may have chosen for their other effects.
@@ -53,7 +55,7 @@ pub(crate) fn calibrate(
     let open = interfaces.iter().all(|interface| interface.open);
     if settings.own_scale {
         chosen.scale_factor = of_bodies;
-    } else if !settings.use_scale_factor || (open && settings.manual.is_none()) {
+    } else if !settings.use_scale_factor || (open && given.scale_factor.is_none()) {
         chosen.scale_factor = 1.0;
     }
     part.info.values.insert(INITIAL_PENALTY.name(), chosen.penalty);

@@ -6,7 +6,7 @@ use zelus_core::parameters::Interval;
 
 use crate::adaptation::{AdaptationSettings, ExplicitPenalty, UzawaSettings};
 use crate::friction::FrictionSettings;
-use crate::interface::{AlmParameters, NodalNormals};
+use crate::interface::{GivenParameters, NodalNormals};
 use crate::law::{Augmentation, Nitsche, NormalVariation};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::Formulation;
@@ -42,8 +42,8 @@ pub struct ContactSettings {
     pub adapt_search: bool,
     /// Steps between searches.
     pub database_step_update: usize,
-    /// Penalty and scale factor given by hand.
-    pub manual: Option<AlmParameters>,
+    /// Penalty and scale factor that take the place of the estimate.
+    pub given: GivenParameters,
     /// Factor of E/h in eq. 4.11, and ratio of scale factor and penalty.
     pub estimate: [f64; 2],
     /// Factor of the estimated penalty; the penalty formulations need a stiffer spring.

@@ -61,6 +61,7 @@ impl Setup {
         messages: &mut Vec<Diagnostic>,
     ) -> Result<()> {
         self.adapt_search(part);
+        self.settings.given = self.settings.given.or_written(&part.info);
         let (threshold, parameters) = calibrate(part, interfaces, &self.settings, &self.parameters, messages)?;
         (self.threshold, self.parameters) = (threshold, Arc::new(parameters));
         Ok(())
