@@ -11,9 +11,9 @@ fn a_constraint_on_a_supported_node_is_refused() {
     let scratch = scratch_copy(&root().join("tests/cases/structural/bar_thickness"));
     let path = scratch.path().join("mesh.mdpa");
     let mesh = std::fs::read_to_string(&path).expect("the mesh");
-    let with = |slave: usize, master: usize| {
+    let with = |slave: usize, master: usize, constant: f64| {
         let constraint = format!(
-            "Begin Constraints LinearMasterSlaveConstraint DISPLACEMENT_X DISPLACEMENT_X\n1 0.0 [1.0] {slave} {master}\n\
+            "Begin Constraints LinearMasterSlaveConstraint DISPLACEMENT_X DISPLACEMENT_X\n1 {constant} [1.0] {slave} {master}\n\
              End Constraints\n\n"
         );
         let (head, parts) = mesh.split_once("Begin SubModelPart").expect("parts");
@@ -21,12 +21,16 @@ fn a_constraint_on_a_supported_node_is_refused() {
         let output = zelus(scratch.path(), &["run", DECK]);
         (output.status.code(), said(&output))
     };
-    let (code, said) = with(1, 7);
-    let names = ["error[constraint-on-support]", "DISPLACEMENT_X of node 1"];
-    assert!(code == Some(2) && names.iter().all(|name| said.contains(name)), "{code:?} {said}");
+    for (master, constant, why) in
+        [(7, 0.0, "a support prescribes it"), (6, 1e-3, "gives it 0.001, and a support prescribes 0")]
+    {
+        let (code, said) = with(1, master, constant);
+        let words = ["error[constraint-on-support]", "DISPLACEMENT_X of node 1", why];
+        assert!(code == Some(2) && words.iter().all(|word| said.contains(word)), "{code:?} {said}");
+    }
     // A free node may follow a supported one, and supported nodes each other.
-    for (slave, master) in [(7, 1), (1, 6)] {
-        let (code, said) = with(slave, master);
+    for (slave, master, constant) in [(7, 1, 1e-3), (1, 6, 0.0)] {
+        let (code, said) = with(slave, master, constant);
         assert_eq!(code, Some(0), "{slave} follows {master}: {said}");
     }
 }

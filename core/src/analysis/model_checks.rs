@@ -3,7 +3,8 @@
 use rustc_hash::FxHashMap;
 use zelus_linear_algebra::parallel;
 
-use crate::diagnostics::{Diagnostic, Report, counted};
+use crate::assembly::{DofTable, Equations};
+use crate::diagnostics::{Diagnostic, Report, Result, counted};
 use crate::geometry::Shape;
 use crate::model::{EntityRole, EntityTable, ModelPart, ScalarVariable, SubPart, mesh_box};
 use crate::processes::{Load, LoadCarrier, Prescription, Process};
@@ -178,6 +179,28 @@ pub(super) fn warn_of_contradictions(
             return;
         }
     }
+}
+
+/// Checks linear constraints against the supports of the processes at a time: a supported slave may follow supported nodes alone,
+/// and only at the value that they give it.
+///
+/// # Errors
+/// As [`Equations::with_supports`].
+pub(super) fn check_constraints(
+    part: &ModelPart,
+    dofs: &DofTable,
+    processes: &[Box<dyn Process>],
+    time: f64,
+) -> Result<()> {
+    if part.constraints.is_empty() {
+        return Ok(());
+    }
+    let mut known: FxHashMap<(ScalarVariable, u32), Option<f64>> = FxHashMap::default();
+    for prescription in prescriptions(part, processes, time) {
+        let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+        known.extend(prescription.values.iter().map(|&(node, value)| ((prescription.variable, node), finite(value))));
+    }
+    Equations::with_supports(dofs, part, &|variable, node| known.get(&(variable, node)).copied()).map(|_| ())
 }
 
 /// Warns of loads that a later process gives in place of those of an earlier one, where both act at once; collective.

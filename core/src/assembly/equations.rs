@@ -13,7 +13,7 @@ use zelus_linear_algebra::{Csr, Layout, parallel};
 use super::dof_table::{DofTable, NONE};
 use super::rows::{ROWS, fill_rows, starts};
 use crate::diagnostics::{Diagnostic, Result};
-use crate::model::{MasterSlaveConstraint, ModelPart};
+use crate::model::{MasterSlaveConstraint, ModelPart, ScalarVariable};
 
 /// Role of an unknown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -82,13 +82,16 @@ pub struct Equations {
     pub layout: Layout,
 }
 
-/// A constraint that would take the place of a support.
-fn supported_slave(constraint: &MasterSlaveConstraint, node: usize) -> Diagnostic {
+/// Difference of two prescribed values that are one, as a share of the largest of them.
+const SAME_VALUE: f64 = 1e-9;
+
+/// Value that a support prescribes for an unknown of a node, `None` inside where it is not known; `None` where no support holds it.
+pub type SupportOf<'a> = dyn Fn(ScalarVariable, u32) -> Option<Option<f64>> + Sync + 'a;
+
+/// A constraint whose slave a support prescribes.
+fn supported_slave(constraint: &MasterSlaveConstraint, node: usize, why: &str) -> Diagnostic {
     let (_, variable) = constraint.slave;
-    let fact = format!(
-        "constraint {} makes {variable} of node {node} follow others, and a support prescribes it",
-        constraint.id
-    );
+    let fact = format!("constraint {} makes {variable} of node {node} follow others, {why}", constraint.id);
     let remedy = "take the node out of the support, or make one of its masters the slave";
     Diagnostic::error("constraint-on-support", fact).remedy(remedy)
 }
@@ -99,6 +102,14 @@ impl Equations {
     /// # Errors
     /// Constraints that form a circle, eliminate an unknown twice, or one that a support prescribes.
     pub fn new(dofs: &DofTable, part: &ModelPart) -> Result<Self> {
+        Self::with_supports(dofs, part, &|variable, node| part.nodes.is_fixed(variable, node).then_some(None))
+    }
+
+    /// The equations left by supports and active constraints. A supported slave may follow supported nodes.
+    ///
+    /// # Errors
+    /// As [`Equations::new`]; a supported slave whose value is not the one that its masters give it.
+    pub fn with_supports(dofs: &DofTable, part: &ModelPart, support: &SupportOf<'_>) -> Result<Self> {
         let nodes = &part.nodes;
         let mut slaves: BTreeMap<u32, &MasterSlaveConstraint> = BTreeMap::new();
         for constraint in part.constraints.iter().filter(|c| c.active) {
@@ -115,7 +126,7 @@ impl Equations {
         }
         let is_free = |number: usize| {
             let dof = &dofs.dofs()[number];
-            !slaves.contains_key(&(number as u32)) && !nodes.is_fixed(dof.variable, dof.node)
+            !slaves.contains_key(&(number as u32)) && support(dof.variable, dof.node).is_none()
         };
         let is_free: Vec<bool> = parallel::map(dofs.len(), ROWS, is_free);
         let mut roles = vec![DofRole::Fixed; dofs.len()];
@@ -127,11 +138,15 @@ impl Equations {
         let mut leaning = Vec::new();
         for (&number, constraint) in &slaves {
             let mut terms = BTreeMap::new();
-            follow(number, [1.0; 2], &slaves, dofs, part, 0, &mut terms)?;
+            let constant = follow(number, [1.0; 2], &slaves, dofs, part, 0, &mut terms)?;
             let (node, variable) = constraint.slave;
-            let is_free = |master: &u32| matches!(roles[*master as usize], DofRole::Free(_));
-            if constraint.set.is_none() && nodes.is_fixed(variable, node) && terms.keys().any(is_free) {
-                return Err(supported_slave(constraint, nodes.ids[node as usize]).into());
+            if let Some(value) = support(variable, node).filter(|_| constraint.set.is_none()) {
+                let support_of =
+                    |number: u32| support(dofs.dofs()[number as usize].variable, dofs.dofs()[number as usize].node);
+                let masters = terms.iter().map(|(&master, [weight, _])| Some((*weight, support_of(master)?)));
+                if let Some(why) = contradiction(value, constant, masters) {
+                    return Err(supported_slave(constraint, nodes.ids[node as usize], &why).into());
+                }
             }
             let mut follows = Vec::with_capacity(terms.len());
             for (master, [weight, force]) in terms {
@@ -314,6 +329,23 @@ impl Equations {
     }
 }
 
+/// Why a supported slave cannot follow its masters, given as weight and prescribed value, `None` for free ones.
+fn contradiction(
+    value: Option<f64>,
+    constant: f64,
+    masters: impl Iterator<Item = Option<(f64, Option<f64>)>>,
+) -> Option<String> {
+    let Some(masters) = masters.collect::<Option<Vec<_>>>() else {
+        return Some("and a support prescribes it".to_owned());
+    };
+    let products = masters.into_iter().map(|(weight, of)| of.map(|of| weight * of)).collect::<Option<Vec<f64>>>()?;
+    let (value, follows) = (value?, constant + products.iter().sum::<f64>());
+    let largest = products.iter().fold(constant.abs().max(value.abs()), |most, product| most.max(product.abs()));
+    let differs = (value - follows).abs() > SAME_VALUE * largest;
+    differs.then(|| format!("which gives it {follows}, and a support prescribes {value}"))
+}
+
+/// Adds the unknowns that a slave follows through all constraints to `terms`; the sum of their constants.
 fn follow(
     number: u32,
     shares: [f64; 2],
@@ -322,12 +354,13 @@ fn follow(
     part: &ModelPart,
     depth: usize,
     terms: &mut BTreeMap<u32, [f64; 2]>,
-) -> Result<()> {
+) -> Result<f64> {
     let constraint = slaves[&number];
     if depth > slaves.len() {
         let fact = format!("constraint {} depends on itself through other constraints", constraint.id);
         return Err(Diagnostic::error("constraint-circle", fact).remedy("remove one constraint of the circle").into());
     }
+    let mut constant = shares[0] * constraint.constant;
     for (at, &((node, variable), weight)) in constraint.masters.iter().enumerate() {
         let force = constraint.forces.as_ref().map_or(weight, |forces| forces[at]);
         let shares = [shares[0] * weight, shares[1] * force];
@@ -342,13 +375,13 @@ fn follow(
             )
         })?;
         if slaves.contains_key(&master) {
-            follow(master, shares, slaves, dofs, part, depth + 1, terms)?;
+            constant += follow(master, shares, slaves, dofs, part, depth + 1, terms)?;
         } else {
             let sums = terms.entry(master).or_insert([0.0; 2]);
             (0..2).for_each(|at| sums[at] += shares[at]);
         }
     }
-    Ok(())
+    Ok(constant)
 }
 
 /// Makes the values of constrained unknowns obey their constraints: u_s = Σ w u_m + g.

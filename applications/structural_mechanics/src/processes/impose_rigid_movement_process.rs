@@ -84,9 +84,10 @@ impl Process for ImposeRigidMovement {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root_mut(&self.root)?;
         let pairs = self.slaves.iter().flat_map(|&node| self.variables.iter().map(move |&pair| (node, pair)));
+        let active = self.interval.contains(part.info.time);
         let follows = |(node, (slave, master))| MasterSlaveConstraint {
             constant: self.constant,
-            active: false,
+            active,
             ..MasterSlaveConstraint::new((node, slave), vec![((self.master, master), self.relation)])
         };
         let new: Vec<_> = pairs.map(follows).collect();

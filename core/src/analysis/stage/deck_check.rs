@@ -4,7 +4,8 @@ use super::super::body_loads::{warn_of_body_loads, warn_of_no_inertia};
 use super::super::coincident_nodes::warn_of_coincident_nodes;
 use super::super::loose_loads::warn_of_loose_loads;
 use super::super::model_checks::{
-    prescriptions, warn_of_collapsed, warn_of_contradictions, warn_of_height, warn_of_loads_given_twice, warn_of_twins,
+    check_constraints, prescriptions, warn_of_collapsed, warn_of_contradictions, warn_of_height,
+    warn_of_loads_given_twice, warn_of_twins,
 };
 use super::super::no_load::warn_of_no_load;
 use super::super::rigid_body_modes::report_restraints;
@@ -48,6 +49,9 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
     warn_of_loads_given_twice(part, processes, &mut problems);
     warn_of_body_loads(part, system, processes, &mut problems);
     warn_of_contradictions(part, processes, [middle, schedule.end_time], &mut problems);
+    let times = schedule.first_step_end().into_iter().chain([middle, schedule.end_time]);
+    problems
+        .absorb(times.map(|time| check_constraints(part, &system.dofs, processes, time)).collect::<Result<Vec<()>>>());
     let is_static = matches!(solver.scheme()?, TimeScheme::Implicit(scheme) if scheme.is_static());
     if !is_static && part.info.step == 0 {
         warn_of_no_inertia(part, &mut problems);
