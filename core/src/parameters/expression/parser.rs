@@ -6,7 +6,7 @@
 //! term   = factor { ("*" | "/" | "%") factor }
 //! factor = signed { "^" signed }                      from the left
 //! signed = { "+" | "-" } base
-//! base   = NUMBER | VARIABLE | CONSTANT [ "()" ] | ONE signed | TWO "(" sum "," sum ")" | "(" sum ")"
+//! base   = NUMBER | VARIABLE | CONSTANT [ "()" ] | ONE signed | TWO "(" sum "," sum ")" | "(" whole ")"
 //! ```
 
 use super::functions::{CONSTANTS, FUNCTIONS, Function};
@@ -30,7 +30,7 @@ pub(super) fn compile(text: &str) -> Result<Vec<Op>, ExpressionError> {
     let mut parser = Parser { text, next: 0, token: Token::End, start: 0, depth: 0, height: 0, code: Vec::new() };
     parser.advance()?;
     parser.whole()?;
-    Ok(parser.code)
+    if parser.token == Token::End { Ok(parser.code) } else { Err(parser.unexpected("an operator or the end")) }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -157,11 +157,13 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
+    /// A sum, or one of two by a comparison.
     fn whole(&mut self) -> Parsed {
+        let begin = self.code.len();
         self.sum()?;
         if self.token == Token::Name("if") {
             self.advance()?;
-            let chosen = std::mem::take(&mut self.code);
+            let chosen = self.code.split_off(begin);
             self.height -= 1;
             self.sum()?;
             let Token::Operator(comparison) = self.token else { return Err(self.unexpected("<, <=, >, >= or ==")) };
@@ -179,7 +181,7 @@ impl<'a> Parser<'a> {
             let otherwise = self.code.len() - at;
             self.code.insert(at, Op::Skip(otherwise));
         }
-        if self.token == Token::End { Ok(()) } else { Err(self.unexpected("an operator or the end")) }
+        Ok(())
     }
 
     fn sum(&mut self) -> Parsed {
@@ -231,7 +233,7 @@ impl<'a> Parser<'a> {
             }
             Token::Open => {
                 self.advance()?;
-                self.sum()?;
+                self.whole()?;
                 self.expect(Token::Close, "\")\"")
             }
             Token::Name(name) => self.name(name),

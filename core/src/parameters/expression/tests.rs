@@ -74,6 +74,11 @@ fn conditions_choose_between_two_values() {
     assert_eq!(value("1 if x > y else 2"), 2.0);
     assert_eq!(value("1 if x+1 == y else 2"), 1.0);
     assert_eq!(value("1 if x <= 2 else 2"), 1.0);
+    assert_eq!(value("2.0*(1.0 if t < 1 else 2.0)"), 4.0);
+    assert_eq!(value("(1 if t < 1 else 2) + sqrt(4 if t > 1 else 9)^2*(3 if x < y else 0)"), 14.0);
+    assert_eq!(value("1 if t < 1 else (2 if t < 2 else (3 if t < 3 else 4))"), 4.0);
+    assert_eq!(value("(t if (1 if t < 1 else 2) == 2 else 0)"), 3.0);
+    assert!(refused("2*(1 if t < 2)").contains("expected else, found"));
     assert!(refused("1 if t else 2").contains("expected <, <=, >, >= or =="));
     assert!(refused("1 if t < 2").contains("expected else, found the end"));
     assert!(refused("t < 2").contains("compare only in: A if LEFT < RIGHT else B"));
