@@ -6,6 +6,9 @@ use crate::DECK;
 use crate::support::{read_json, root, said, scratch_copy, zelus};
 use crate::table::{PRESSED, SLIDING, contact, load};
 
+/// Heat and a structure on one mesh.
+const COUPLED: &str = "examples/shrink_fit_by_cooling";
+
 /// A change of a deck of tests/cases, and words of the message that `zelus check` gives then.
 type Change = (&'static str, fn(&mut Value), &'static [&'static str]);
 
@@ -75,9 +78,10 @@ const CHANGES: &[Change] = &[
     ),
 ];
 
-/// Messages of `zelus check` on a changed copy of a case.
+/// Messages of `zelus check` on a changed copy of a case, or of an example where its name begins with "examples/".
 fn check(case: &str, change: impl Fn(&mut Value), files: impl Fn(&std::path::Path)) -> String {
-    let scratch = scratch_copy(&root().join("tests/cases").join(case));
+    let folder = if case.starts_with("examples/") { root().join(case) } else { root().join("tests/cases").join(case) };
+    let scratch = scratch_copy(&folder);
     let path = scratch.path().join(DECK);
     let mut deck = read_json(&path).expect("the deck");
     change(&mut deck);
@@ -101,6 +105,34 @@ fn words_that_a_key_does_not_know_are_refused() {
     let scratch = scratch_copy(&example);
     let said = said(&zelus(scratch.path(), &["check", DECK, "--set", "solver_settings.gradients=\"at_center\""]));
     assert!(said.contains("error[invalid-value]") && said.contains("at_centre"), "{said}");
+}
+
+#[test]
+fn keys_of_free_objects_that_nothing_reads_are_told() {
+    let cases: [(&str, fn(&mut Value) -> &mut Value); 5] = [
+        (PRESSED, |deck| &mut deck["solver_settings"]["solving_strategy_settings"]["advanced_settings"]),
+        (PRESSED, |deck| &mut deck["solver_settings"]["builder_and_solver_settings"]["advanced_settings"]),
+        (COUPLED, |deck| &mut deck["solver_settings"]["thermal_solver_settings"]["linear_solver_settings"]),
+        (COUPLED, |deck| &mut deck["solver_settings"]["thermal_solver_settings"]["model_import_settings"]),
+        ("mpc/mapped_field", |deck| {
+            let lists = deck["processes"].as_object_mut().expect("lists of processes");
+            let all = lists.values_mut().filter_map(Value::as_array_mut).flatten();
+            let mapper = all.into_iter().find(|process| process["python_module"] == "simple_mortar_mapper_process");
+            &mut mapper.expect("a mapper")["Parameters"]["linear_solver_settings"]
+        }),
+    ];
+    for (case, object) in cases {
+        let said = check(case, |deck| object(deck)["tolerence"] = json!(1e-3), |_| ());
+        assert!(
+            said.contains("warning[unknown-key-ignored]") && said.contains("nothing reads \"tolerence\""),
+            "{case}: {said}"
+        );
+    }
+    let other = |deck: &mut Value| {
+        deck["solver_settings"]["thermal_solver_settings"]["time_stepping"] = json!({"time_step": 7.0})
+    };
+    let said = check(COUPLED, other, |_| ());
+    assert!(said.contains("warning[time-step]") && said.contains("thermal_solver_settings.time_stepping"), "{said}");
 }
 
 #[test]

@@ -138,7 +138,10 @@ pub(super) fn check_top_level(deck: &Node, known: &[&str], problems: &mut Report
 /// The warning that nothing reads a key of `object`, whose `known` keys are read.
 pub(super) fn unread_key(object: &Node, key: &str, fact: String, known: &[&str]) -> Diagnostic {
     let near = did_you_mean(key, known.iter().copied());
-    let remedy = near.unwrap_or_else(|| format!("read are: {}", known.join(", ")));
+    let remedy = near.unwrap_or_else(|| match known {
+        [] => "remove it: the object has no keys".to_owned(),
+        _ => format!("read are: {}", known.join(", ")),
+    });
     Diagnostic::warning("unknown-key-ignored", fact).at(object.key_place(key)).remedy(remedy)
 }
 

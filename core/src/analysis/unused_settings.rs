@@ -9,10 +9,11 @@ use crate::io::MeshFormatEntry;
 use crate::parameters::{Defaults, Interval, Node};
 use crate::processes::ProcessEntry;
 use crate::registry;
-use crate::strategies::LinearSolverEntry;
+use crate::strategies::{LinearSolverEntry, StrategyEntry};
 
-/// Objects of a deck that no registered settings check, with the keys that are read there, or that need no word.
-const OBJECTS: [(&str, &[&str]); 3] = [
+/// Objects of a deck that no registered settings check, by the end of their path, with the keys that are read there, or that need no
+/// word.
+const OBJECTS: [(&str, &[&str]); 5] = [
     (
         "problem_data",
         &[
@@ -30,7 +31,7 @@ const OBJECTS: [(&str, &[&str]); 3] = [
         ],
     ),
     (
-        "solver_settings.model_import_settings",
+        "model_import_settings",
         &[
             "input_type",
             "input_filename",
@@ -45,7 +46,7 @@ const OBJECTS: [(&str, &[&str]); 3] = [
         ],
     ),
     (
-        "solver_settings.linear_solver_settings",
+        "linear_solver_settings",
         &[
             "solver_type",
             "tolerance",
@@ -74,7 +75,12 @@ const OBJECTS: [(&str, &[&str]); 3] = [
             "petsc_options",
         ],
     ),
+    ("solving_strategy_settings.advanced_settings", &[]),
+    ("builder_and_solver_settings.advanced_settings", &[]),
 ];
+
+/// Path of the steps of a stage; objects of that name further below are not read.
+const STEPS: &str = "solver_settings.time_stepping";
 
 /// Keys of a listed process beside its parameters; others that begin with an underscore or "comment" are words to readers.
 const OF_PROCESS: [&str; 9] = [
@@ -94,12 +100,7 @@ const SAME_TIME: f64 = 1e-9;
 
 /// Keys that nothing reads, and intervals outside the times of the run.
 pub(super) fn warn_of_unused_settings(deck: &Node, times: Option<((f64, f64), &TimeStepping)>, report: &mut Report) {
-    for (path, known) in OBJECTS {
-        let Some(object) = deck.get_path(path) else { continue };
-        let Some(own) = own_settings(object) else { continue };
-        let own = own.entries().iter().map(|entry| entry.path.as_str());
-        warn_of_keys(object, path, &known.iter().copied().chain(own).collect::<Vec<_>>(), report);
-    }
+    warn_of_objects(deck, "", deck.get_path(STEPS), report);
     let processes = listed(deck, &mut Report::new());
     processes.iter().for_each(|process| warn_of_keys(process, "a process", &OF_PROCESS, report));
     let Some(((start, end), stepping)) = times.filter(|((start, end), _)| end > start) else { return };
@@ -137,6 +138,30 @@ pub(super) fn warn_of_unused_settings(deck: &Node, times: Option<((f64, f64), &T
     }
 }
 
+/// Keys that nothing reads of the objects below `node`, which stands at `path`, that no registered settings check; `steps` are those of
+/// the stage.
+fn warn_of_objects(node: &Node, path: &str, steps: Option<&Node>, report: &mut Report) {
+    node.as_array().into_iter().flatten().for_each(|item| warn_of_objects(item, path, steps, report));
+    for member in node.as_object().into_iter().flat_map(|object| object.iter()) {
+        let (object, path) = (&member.node, [path, &member.key].join("."));
+        let ends_with = |name: &str| path.strip_suffix(name).is_some_and(|rest| rest.ends_with('.'));
+        let name = path.trim_start_matches('.');
+        if let Some((_, known)) = OBJECTS.iter().find(|(name, _)| ends_with(name))
+            && let Some(own) = own_settings(object, node)
+        {
+            let own = own.entries().iter().map(|entry| entry.path.as_str());
+            warn_of_keys(object, name, &known.iter().copied().chain(own).collect::<Vec<_>>(), report);
+        }
+        let is_nested = name != STEPS && ends_with("time_stepping");
+        if is_nested && steps.is_some_and(|steps| steps.to_json() != object.to_json()) {
+            let fact = format!("nothing reads \"{name}\", and \"{STEPS}\" of the stage differs from it");
+            let remedy = "give the steps to the solver that leads, or remove the others";
+            report.push(Diagnostic::warning("time-step", fact).at(node.key_place(&member.key)).remedy(remedy));
+        }
+        warn_of_objects(object, &path, steps, report);
+    }
+}
+
 /// Whether a process of the deck makes surfaces act on each other.
 fn is_of_surfaces(process: &Node) -> bool {
     let name = process.get("python_module").and_then(Node::as_str).unwrap_or_default();
@@ -144,15 +169,17 @@ fn is_of_surfaces(process: &Node) -> bool {
     entry.is_some_and(|entry| !(entry.surfaces)(process.get("Parameters")).is_empty())
 }
 
-/// Settings that the linear solver or mesh format named by `object` reads besides, empty where it names none; `None` where there is no
-/// such solver.
-fn own_settings(object: &Node) -> Option<Defaults> {
+/// Settings that the linear solver or mesh format named by `object`, or the strategy named by its `parent`, reads besides, empty where
+/// none is named; `None` where there is no such solver, and where the strategy checks them itself.
+fn own_settings(object: &Node, parent: &Node) -> Option<Defaults> {
     let name = object.get("solver_type").and_then(|node| node.as_str()?.rsplit('.').next()).unwrap_or_default();
     let format = object.get("input_type").and_then(Node::as_str).and_then(registry::find::<MeshFormatEntry>);
+    let strategy = parent.get("type").and_then(Node::as_str).and_then(registry::find::<StrategyEntry>);
     match registry::find::<LinearSolverEntry>(name) {
         None if !name.is_empty() => None,
         Some(entry) if !entry.defaults.is_empty() => Defaults::parse(name, entry.defaults).ok(),
         _ if format.is_some_and(|format| !format.defaults.is_empty()) => Defaults::parse(name, format?.defaults).ok(),
+        _ if strategy.is_some_and(|strategy| !strategy.defaults.is_empty()) => None,
         _ => Some(Defaults::free_form(name)),
     }
 }
