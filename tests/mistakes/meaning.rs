@@ -101,10 +101,26 @@ fn a_change_of_meaning_is_told() {
 
 #[test]
 fn words_that_a_key_does_not_know_are_refused() {
-    let example = root().join("examples/transient_slab");
-    let scratch = scratch_copy(&example);
-    let said = said(&zelus(scratch.path(), &["check", DECK, "--set", "solver_settings.gradients=\"at_center\""]));
-    assert!(said.contains("error[invalid-value]") && said.contains("at_centre"), "{said}");
+    let explicit = "contact_3d/explicit_touch";
+    let cases: [(&str, fn(&mut Value), &str); 4] = [
+        ("examples/transient_slab", |deck| deck["solver_settings"]["gradients"] = json!("at_center"), "at_centre"),
+        (
+            PRESSED,
+            |deck| {
+                deck["output_processes"]["pictures"] = json!([{"python_module": "vtu_output_process",
+                    "Parameters": {"model_part_name": "Structure", "file_format": "asci"}}]);
+            },
+            "ascii",
+        ),
+        (COUPLED, |deck| deck["solver_settings"]["time_integration_method"] = json!("implict"), "implicit"),
+        (explicit, |deck| deck["solver_settings"]["builder_and_solver_settings"] = json!({"type": "blok"}), "block"),
+    ];
+    for (case, change, remedy) in cases {
+        let said = check(case, change, |_| ());
+        assert!(said.contains("error[") && said.contains(&format!("did you mean \"{remedy}\"")), "{case}: {said}");
+    }
+    let said = check(COUPLED, |deck| deck["solver_settings"]["domain_size"] = json!("two"), |_| ());
+    assert!(said.contains("error[wrong-type]") && said.contains("domain_size"), "{said}");
 }
 
 #[test]

@@ -503,14 +503,15 @@ impl SolverSettings {
         Ok((made, says))
     }
 
-    /// Checks that the objects of the iterations exist.
+    /// Checks that builder and objects of the iterations exist.
     ///
     /// # Errors
     /// Names that are not registered, a number of iterations that is none, gathered.
     pub fn check_names(&self) -> Result<()> {
         let mut problems = Report::new();
+        problems.absorb(self.named::<BuilderEntry>(BUILDER));
         if self.definition.explicit {
-            return Ok(());
+            return problems.finish().map(|_| ());
         }
         let analysis = self.settings.get_str("analysis_type")?;
         if !matches!(analysis, "linear" | "non_linear") {
@@ -530,7 +531,6 @@ impl SolverSettings {
         };
         problems.absorb(make_linear_solver(&request));
         problems.absorb(self.named::<StrategyEntry>(STRATEGY));
-        problems.absorb(self.named::<BuilderEntry>(BUILDER));
         problems.finish().map(|_| ())
     }
 
