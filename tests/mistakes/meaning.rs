@@ -152,6 +152,27 @@ fn keys_of_free_objects_that_nothing_reads_are_told() {
 }
 
 #[test]
+fn constants_that_the_law_at_hand_does_not_take_are_told() {
+    for (name, words) in [
+        ("YIELD_STRESS", "LinearElasticPlaneStrain2DLaw does not take it"),
+        ("THERMAL_EXPANSION_COEFFICIENT", "LinearElasticPlaneStrain2DLaw does not take it"),
+        ("FRICTION_COEFFICIENT", "is 0.4, and contact of pair \"0\" is without friction"),
+    ] {
+        let said = check(
+            PRESSED,
+            |_| (),
+            |folder| {
+                let path = folder.join("StructuralMaterials.json");
+                let mut document = read_json(&path).expect("materials");
+                document["properties"][0]["Material"]["Variables"][name] = json!(0.4);
+                std::fs::write(&path, document.to_string()).expect("materials");
+            },
+        );
+        assert!(said.contains("warning[variable-without-effect]") && said.contains(words), "{name}: {said}");
+    }
+}
+
+#[test]
 fn tables_that_begin_late_or_lack_values_are_told() {
     let with = |rows: &str| {
         check("structural/load_table", |_| (), |folder| std::fs::write(folder.join("load.csv"), rows).expect("a table"))

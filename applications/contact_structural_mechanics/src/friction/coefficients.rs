@@ -38,7 +38,7 @@ impl Default for FrictionSettings {
 
 /// Writes the number of the law, the mean over the facets of a node, and says how stick and slip are told apart. Facets whose
 /// properties have none count with the pair's coefficient where the law takes one, else with the node's own coefficient. Without a
-/// number anywhere, contact always slides, and a warning among the `messages` says so.
+/// number anywhere, contact always slides, and a warning among the `messages` says so; so does one of numbers without friction.
 ///
 /// # Errors
 /// A number below zero.
@@ -120,6 +120,9 @@ pub(crate) fn prepare(
         let remedy = "take one of the two out";
         messages.push(Diagnostic::warning("friction-overridden", fact).remedy(remedy));
     }
+    if friction == Friction::None {
+        messages.extend(unread_coefficient(part, interfaces, law));
+    }
     if law.by_coefficients && PER_CENT.contains(&largest) {
         let fact = format!("the largest {} is {largest}", law.variable.name());
         let remedy = "write the ratio of forces, e.g. 0.3 for 30 %";
@@ -143,6 +146,17 @@ pub(crate) fn prepare(
     }
     let pure = friction == Friction::PureSlip || largest <= 0.0;
     Ok(if pure { SlipRule::Pure } else { SlipRule::Bounded(settings.margin) })
+}
+
+/// The warning that properties of contact without friction give a number of the law.
+pub(crate) fn unread_coefficient(part: &ModelPart, interfaces: &[Interface], law: &FrictionLaw) -> Option<Diagnostic> {
+    let name = law.variable.name();
+    let mut facets = interfaces.iter().flat_map(|own| own.facets.iter().map(move |facet| (&own.key, facet.properties)));
+    let number = |id: &usize| part.properties.get(id).and_then(|own| own.number(name)).filter(|own| *own > 0.0);
+    let (pair, id, own) = facets.find_map(|(pair, id)| Some((pair, id, number(&id)?)))?;
+    let fact = format!("{name} of properties {id} is {own}, and contact of pair \"{pair}\" is without friction");
+    let remedy = "choose a frictional \"contact_type\", or take the coefficient out";
+    Some(Diagnostic::warning("variable-without-effect", fact).remedy(remedy))
 }
 
 /// Keys of pairs in quotation marks.

@@ -8,5 +8,5 @@ mod step_slip;
 
 pub(crate) use bounds::{meet_bounds, start_in_stick, warn_of_pushing};
 pub use coefficients::FrictionSettings;
-pub(crate) use coefficients::prepare;
+pub(crate) use coefficients::{prepare, unread_coefficient};
 pub(crate) use step_slip::slip;

@@ -320,6 +320,10 @@ impl Interaction for MpcInteraction {
         if self.young == 0.0 {
             self.young = largest(&mut part.properties.keys().filter_map(young));
         }
+        if self.settings.kind == MpcKind::Frictionless {
+            let law = self.settings.friction.law;
+            self.messages.extend(friction::unread_coefficient(part, &self.interfaces, law));
+        }
         if self.settings.kind == MpcKind::Frictional {
             part.nodes.history.add(&WEIGHTED_SLIP);
             let friction = if self.settings.pure_slip { Friction::PureSlip } else { Friction::Coulomb };

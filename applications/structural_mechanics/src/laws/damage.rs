@@ -218,25 +218,40 @@ impl<const S: usize, const STRESS_FREE: bool> ConstitutiveLaw<S> for IsotropicDa
     }
 }
 
+/// Constants that laws of damage take.
+const CONSTANTS: &[&str] = &["YIELD_STRESS", "YIELD_STRESS_TENSION", "FRACTURE_ENERGY", "SOFTENING_TYPE"];
+
+/// Constants that laws of damage with expansion take.
+const EXPANDING_CONSTANTS: &[&str] = &[
+    "YIELD_STRESS",
+    "YIELD_STRESS_TENSION",
+    "FRACTURE_ENERGY",
+    "SOFTENING_TYPE",
+    "THERMAL_EXPANSION_COEFFICIENT",
+    "REFERENCE_TEMPERATURE",
+];
+
 /// Registers the laws of an equivalent stress, with and without expansion.
 macro_rules! damage {
     ($($surface:ident, $word:literal;)+) => {
         $(
-            damage! { @forms "SmallStrainIsotropicDamage", $surface, $word, false,
+            damage! { @forms "SmallStrainIsotropicDamage", $surface, $word, false, CONSTANTS,
                 "constants YOUNG_MODULUS, POISSON_RATIO, YIELD_STRESS, FRACTURE_ENERGY, SOFTENING_TYPE 0 (linear) or 1 (exponential)" }
-            damage! { @forms "SmallStrainThermalIsotropicDamage", $surface, $word, true,
+            damage! { @forms "SmallStrainThermalIsotropicDamage", $surface, $word, true, EXPANDING_CONSTANTS,
                 "thermal expansion; constants of SmallStrainIsotropicDamage, THERMAL_EXPANSION_COEFFICIENT, REFERENCE_TEMPERATURE; reads tables over TEMPERATURE" }
         )+
     };
-    (@forms $name:literal, $surface:ident, $word:literal, $expands:literal, $needs:literal) => {
+    (@forms $name:literal, $surface:ident, $word:literal, $expands:literal, $takes:expr, $needs:literal) => {
         register! { LawEntry concat!($name, "3D", stringify!($surface)),
             about: concat!("damage of solids by ", $word, "; ", $needs),
             source: "σ = (1 − d) D ε; the energy of the crack is FRACTURE_ENERGY by area; Oliver 1989",
+            takes: $takes,
             build: LawFactory::Space(|properties| Ok(Box::new(IsotropicDamage::<6, false>::new(properties, EquivalentStress::$surface, $expands)?))),
         }
         register! { LawEntry concat!($name, "PlaneStrain", stringify!($surface)),
             about: concat!("damage in plane strain by ", $word, "; ", $needs),
             source: "σ = (1 − d) D ε with ε_zz = 0; the energy of the crack is FRACTURE_ENERGY by area; Oliver 1989",
+            takes: $takes,
             build: LawFactory::PlaneStrain {
                 plane: |properties| Ok(Box::new(IsotropicDamage::<3, false>::new(properties, EquivalentStress::$surface, $expands)?)),
                 whole: |properties| Ok(Box::new(IsotropicDamage::<4, false>::new(properties, EquivalentStress::$surface, $expands)?)),
@@ -245,6 +260,7 @@ macro_rules! damage {
         register! { LawEntry concat!($name, "PlaneStress", stringify!($surface)),
             about: concat!("damage in plane stress by ", $word, "; ", $needs),
             source: "σ = (1 − d) D ε with σ_zz = 0; the energy of the crack is FRACTURE_ENERGY by area; Oliver 1989",
+            takes: $takes,
             build: LawFactory::PlaneStress(|properties| Ok(Box::new(IsotropicDamage::<3, true>::new(properties, EquivalentStress::$surface, $expands)?))),
         }
     };

@@ -13,7 +13,7 @@ use zelus_core::register;
 use zelus_core::registry::require;
 
 use super::bar_law::BarLaw;
-use super::expansion::{Expansion, without};
+use super::expansion::{self, Expansion, without};
 use super::law::{ConstitutiveLaw, LawEntry, LawFactory, MakesLaw, Matrix, StrainState};
 use super::small_strain_plasticity::PLASTIC_WORK;
 use crate::tensor::Tensor;
@@ -231,6 +231,7 @@ macro_rules! register_expanding {
         register! { LawEntry concat!("Thermal", $name),
             about: concat!($name, " with thermal expansion; needs THERMAL_EXPANSION_COEFFICIENT and REFERENCE_TEMPERATURE beside its properties"),
             source: "ε_m = ε − α (T − T₀) 1 under small strain, F = (1 + α (T − T₀)) F_m else; Lu and Pister, Int. J. Solids Structures 11 (1975)",
+            takes: expansion::CONSTANTS,
             build: $build,
         }
     };

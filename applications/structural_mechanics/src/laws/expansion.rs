@@ -13,6 +13,9 @@ pub struct Expansion {
     reference: f64,
 }
 
+/// Constants that laws with expansion take.
+pub const CONSTANTS: &[&str] = &["THERMAL_EXPANSION_COEFFICIENT", "REFERENCE_TEMPERATURE"];
+
 impl Expansion {
     /// From THERMAL_EXPANSION_COEFFICIENT and REFERENCE_TEMPERATURE.
     ///

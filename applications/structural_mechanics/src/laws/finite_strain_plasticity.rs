@@ -16,6 +16,7 @@ use zelus_core::diagnostics::Result;
 use zelus_core::model::Properties;
 use zelus_core::register;
 
+use super::hardening;
 use super::hyper_elastic::right_cauchy_green;
 use super::j2::{J2, Return};
 use super::law::{ConstitutiveLaw, LawFactory, Matrix, StrainState};
@@ -151,17 +152,20 @@ fn add_dyad<const S: usize>(factor: f64, a: &[f64; S], b: &[f64; S], out: &mut M
 register! { LawEntry "FiniteStrainIsotropicPlasticity3DVonMisesVonMises",
     about: "Von Mises plasticity under finite strain for solids (multiplicative, logarithmic strain); properties as SmallStrainJ2Plasticity3DLaw",
     source: "τ = K tr(ε) 1 + 2μ dev ε, ε = ½ ln b_e; Simo, Computer Methods in Applied Mechanics and Engineering 99 (1992) 61–112",
+    takes: hardening::CONSTANTS,
     build: LawFactory::Space(FiniteStrainPlasticity::boxed::<6>),
 }
 
 register! { LawEntry "FiniteStrainIsotropicPlasticityPlaneStrainVonMisesVonMises",
     about: "Von Mises plasticity under finite plane strain; properties as SmallStrainJ2Plasticity3DLaw",
     source: "τ = K tr(ε) 1 + 2μ dev ε, ε = ½ ln b_e, F_zz = 1",
+    takes: hardening::CONSTANTS,
     build: LawFactory::PlaneStrain { plane: FiniteStrainPlasticity::boxed::<3>, whole: FiniteStrainPlasticity::boxed::<4> },
 }
 
 register! { LawEntry "FiniteStrainIsotropicPlasticityAxisymVonMisesVonMises",
     about: "Von Mises plasticity under finite strain with axial symmetry; properties as SmallStrainJ2Plasticity3DLaw",
     source: "τ = K tr(ε) 1 + 2μ dev ε, ε = ½ ln b_e on (rr, zz, tt, rz)",
+    takes: hardening::CONSTANTS,
     build: LawFactory::Axisymmetric(FiniteStrainPlasticity::boxed::<4>),
 }

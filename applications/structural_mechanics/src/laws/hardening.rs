@@ -121,6 +121,24 @@ impl Hardening {
     }
 }
 
+/// Constants that laws with hardening take; other programs ask for FRACTURE_ENERGY beside a curve.
+pub const CONSTANTS: &[&str] = &[
+    "YIELD_STRESS",
+    "YIELD_STRESS_TENSION",
+    "ISOTROPIC_HARDENING_MODULUS",
+    "EXPONENTIAL_SATURATION_YIELD_STRESS",
+    "HARDENING_EXPONENT",
+    "HARDENING_CURVE",
+    "CURVE_FITTING_PARAMETERS",
+    "PLASTIC_STRAIN_INDICATORS",
+    "TANGENCY_REGION2",
+    "EQUIVALENT_STRESS_VECTOR_PLASTICITY_POINT_CURVE",
+    "TOTAL_STRAIN_VECTOR_PLASTICITY_POINT_CURVE",
+    "PLASTIC_STRAIN_VECTOR_PLASTICITY_POINT_CURVE",
+    "FRACTURE_ENERGY",
+    "SOFTENING_TYPE",
+];
+
 /// YIELD_STRESS, or YIELD_STRESS_TENSION where only that is given.
 fn yield_stress(properties: &Properties) -> Result<f64> {
     match (properties.number("YIELD_STRESS"), properties.number("YIELD_STRESS_TENSION")) {

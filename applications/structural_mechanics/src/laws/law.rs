@@ -3,7 +3,7 @@
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::model::Properties;
 use zelus_core::registered_kind;
-use zelus_core::registry::require;
+use zelus_core::registry::{find, require};
 
 use super::bar_law::MakeBarLaw;
 use crate::tensor::{IDENTITY, Tensor, congruent, push_forward, stress_tensor, stress_vector};
@@ -191,6 +191,16 @@ registered_kind! {
     /// A constitutive law that materials name.
     pub struct LawEntry("constitutive_law", "unknown-law") {
         build: LawFactory;
+        /// Constants that not every law takes.
+        takes: &'static [&'static str] = &[],
+    }
+}
+
+impl LawEntry {
+    /// Whether it takes a constant that not every law takes. A law that expands takes those of the law that it expands, too.
+    pub fn takes_constant(&self, name: &str) -> bool {
+        let expanded = self.name.strip_prefix("Thermal").and_then(find::<Self>);
+        self.takes.contains(&name) || expanded.is_some_and(|law| law.takes.contains(&name))
     }
 }
 

@@ -11,6 +11,7 @@ use zelus_core::diagnostics::Result;
 use zelus_core::model::Properties;
 use zelus_core::register;
 
+use super::hardening;
 use super::j2::{J2, Return};
 use super::law::{ConstitutiveLaw, LawFactory, Matrix, StrainState};
 use crate::tensor::{Tensor, deviator, pairs, strain_tensor, strain_vector, stress_tensor, stress_vector};
@@ -125,29 +126,34 @@ impl<const S: usize> ConstitutiveLaw<S> for SmallStrainPlasticity {
 register! { LawEntry "SmallStrainJ2Plasticity3DLaw",
     about: "Von Mises plasticity under small strain for solids; needs YOUNG_MODULUS, POISSON_RATIO, YIELD_STRESS; takes ISOTROPIC_HARDENING_MODULUS, EXPONENTIAL_SATURATION_YIELD_STRESS, HARDENING_EXPONENT or a HARDENING_CURVE",
     source: "‖dev σ‖ √(3/2) ≤ σ_y(α); Simo and Hughes, Computational Inelasticity, box 3.2",
+    takes: hardening::CONSTANTS,
     build: LawFactory::Space(SmallStrainPlasticity::boxed::<6>),
 }
 
 register! { LawEntry "SmallStrainJ2PlasticityPlaneStrain2DLaw",
     about: "Von Mises plasticity under small plane strain; properties as SmallStrainJ2Plasticity3DLaw",
     source: "‖dev σ‖ √(3/2) ≤ σ_y(α) with ε_zz = 0",
+    takes: hardening::CONSTANTS,
     build: LawFactory::PlaneStrain { plane: SmallStrainPlasticity::boxed::<3>, whole: SmallStrainPlasticity::boxed::<4> },
 }
 
 register! { LawEntry "SmallStrainJ2PlasticityAxisym2DLaw",
     about: "Von Mises plasticity under small strain with axial symmetry; properties as SmallStrainJ2Plasticity3DLaw",
     source: "‖dev σ‖ √(3/2) ≤ σ_y(α) on (rr, zz, tt, rz)",
+    takes: hardening::CONSTANTS,
     build: LawFactory::Axisymmetric(SmallStrainPlasticity::boxed::<4>),
 }
 
 register! { LawEntry "SmallStrainIsotropicPlasticity3DVonMisesVonMises",
     about: "Von Mises plasticity under small strain for solids, by HARDENING_CURVE 3, 4 or 6; otherwise as SmallStrainJ2Plasticity3DLaw",
     source: "‖dev σ‖ √(3/2) ≤ σ_y(α), associated flow",
+    takes: hardening::CONSTANTS,
     build: LawFactory::Space(SmallStrainPlasticity::boxed::<6>),
 }
 
 register! { LawEntry "SmallStrainIsotropicPlasticityPlaneStrainVonMisesVonMises",
     about: "Von Mises plasticity under small plane strain, by HARDENING_CURVE 3, 4 or 6; otherwise as SmallStrainJ2PlasticityPlaneStrain2DLaw",
     source: "‖dev σ‖ √(3/2) ≤ σ_y(α), associated flow, ε_zz = 0",
+    takes: hardening::CONSTANTS,
     build: LawFactory::PlaneStrain { plane: SmallStrainPlasticity::boxed::<3>, whole: SmallStrainPlasticity::boxed::<4> },
 }

@@ -9,7 +9,7 @@ use zelus_core::model::Properties;
 use zelus_core::register;
 
 use super::elastic::{Elasticity, multiply, quadratic_energy};
-use super::expansion::{Expansion, in_form, without};
+use super::expansion::{self, Expansion, in_form, without};
 use super::law::{ConstitutiveLaw, LawEntry, LawFactory, Matrix, StrainState};
 use super::quantity::Quantity;
 
@@ -68,12 +68,14 @@ impl<const S: usize, const STRESS_FREE: bool> ConstitutiveLaw<S> for ThermalElas
 register! { LawEntry "ThermalElasticIsotropic3D",
     about: "Hooke's law with thermal expansion; needs THERMAL_EXPANSION_COEFFICIENT, REFERENCE_TEMPERATURE; reads tables over TEMPERATURE",
     source: "σ = D (ε − α (T − T₀) 1)",
+    takes: expansion::CONSTANTS,
     build: LawFactory::Space(|properties| Ok(Box::new(ThermalElastic::<6, false>::new(properties)?))),
 }
 
 register! { LawEntry "ThermalLinearPlaneStrain",
     about: "Hooke's law of plane strain with thermal expansion; constants of ThermalElasticIsotropic3D",
     source: "σ = D (ε − α (T − T₀) 1) with ε_zz = 0",
+    takes: expansion::CONSTANTS,
     build: LawFactory::PlaneStrain {
         plane: |properties| Ok(Box::new(ThermalElastic::<3, false>::new(properties)?)),
         whole: |properties| Ok(Box::new(ThermalElastic::<4, false>::new(properties)?)),
@@ -83,11 +85,13 @@ register! { LawEntry "ThermalLinearPlaneStrain",
 register! { LawEntry "ThermalLinearPlaneStress",
     about: "Hooke's law of plane stress with thermal expansion; constants of ThermalElasticIsotropic3D",
     source: "σ = D (ε − α (T − T₀) 1) with σ_zz = 0",
+    takes: expansion::CONSTANTS,
     build: LawFactory::PlaneStress(|properties| Ok(Box::new(ThermalElastic::<3, true>::new(properties)?))),
 }
 
 register! { LawEntry "ThermalLinearAxisym",
     about: "Hooke's law with axial symmetry and thermal expansion; constants of ThermalElasticIsotropic3D",
     source: "σ = D (ε − α (T − T₀) 1) on (rr, zz, tt, rz)",
+    takes: expansion::CONSTANTS,
     build: LawFactory::Axisymmetric(|properties| Ok(Box::new(ThermalElastic::<4, false>::new(properties)?))),
 }

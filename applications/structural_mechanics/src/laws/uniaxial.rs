@@ -70,5 +70,6 @@ register! { LawEntry "TrussConstitutiveLaw",
 register! { LawEntry "TrussPlasticityConstitutiveLaw",
     about: "Yielding along a bar, with linear hardening, for trusses; needs YOUNG_MODULUS, YIELD_STRESS, HARDENING_MODULUS_1D",
     source: "|S| ≤ YIELD_STRESS + H α",
+    takes: &["YIELD_STRESS", "HARDENING_MODULUS_1D"],
     build: LawFactory::Bar(plastic),
 }

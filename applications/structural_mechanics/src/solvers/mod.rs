@@ -4,12 +4,16 @@ mod dynamic_solver;
 mod explicit_solver;
 mod static_solver;
 
+use std::collections::BTreeSet;
+
 use zelus_core::analysis::NodalVariable;
-use zelus_core::diagnostics::{Report, Result};
-use zelus_core::model::ModelPart;
+use zelus_core::diagnostics::{Diagnostic, Report, Result};
+use zelus_core::model::{ModelPart, Properties};
 use zelus_core::parameters::{Defaults, Node, Settings, Value};
+use zelus_core::registry::{all, find};
 
 use crate::elements::BANDS_AS_KRATOS;
+use crate::laws::LawEntry;
 
 /// Settings of static solvers with their defaults.
 pub const STATIC_DEFAULTS: &str = include_str!("../../../../configs/solvers/static.json");
@@ -30,7 +34,8 @@ pub const VARIABLES: [NodalVariable; 8] = [
 ///
 /// # Errors
 /// A name that is none.
-pub fn adopt(settings: &Settings, part: &mut ModelPart, _report: &mut Report) -> Result<()> {
+pub fn adopt(settings: &Settings, part: &mut ModelPart, report: &mut Report) -> Result<()> {
+    warn_of_unread_constants(part, report);
     let named = settings.get_str("crack_bands")?;
     if !matches!(named, "of_volume" | "as_kratos") {
         let problem = settings.error("crack_bands", "invalid-value", format!("\"crack_bands\" is \"{named}\""));
@@ -38,6 +43,24 @@ pub fn adopt(settings: &Settings, part: &mut ModelPart, _report: &mut Report) ->
     }
     part.info.set(BANDS_AS_KRATOS, named == "as_kratos");
     Ok(())
+}
+
+/// Warns of constants of elements' properties that their law does not take, and others do.
+fn warn_of_unread_constants(part: &ModelPart, report: &mut Report) {
+    let of_elements: BTreeSet<usize> = part.elements.properties.iter().copied().collect();
+    let mut of_layers: Vec<&Properties> = of_elements.iter().filter_map(|id| part.properties.get(id)).collect();
+    while let Some(properties) = of_layers.pop() {
+        of_layers.extend(&properties.parts);
+        let Some(law) = properties.law.as_deref().and_then(find::<LawEntry>) else { continue };
+        let tables = properties.tables.keys().map(|(_, of)| of);
+        for name in properties.values.keys().chain(tables).filter(|name| !law.takes_constant(name)) {
+            let Some(other) = all::<LawEntry>().into_iter().find(|other| other.takes_constant(name)) else { continue };
+            let fact = format!("{name} of properties {} is not read: {} does not take it", properties.id, law.name);
+            let remedy = format!("remove it, or name a law that takes it, such as {}", other.name);
+            let problem = Diagnostic::warning("variable-without-effect", fact).at(properties.place.clone());
+            report.push(problem.remedy(remedy));
+        }
+    }
 }
 
 /// Names the spellings of older decks.
