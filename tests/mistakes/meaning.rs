@@ -173,6 +173,41 @@ fn constants_that_the_law_at_hand_does_not_take_are_told() {
 }
 
 #[test]
+fn heat_and_wear_around_an_axis_that_bodies_do_not_have_are_told() {
+    for (case, around) in
+        [("examples/bars_in_thermal_contact", true), ("examples/brake_disc", false), ("examples/worn_pin", true)]
+    {
+        let said = check(
+            case,
+            |deck| {
+                let lists = deck["processes"].as_object_mut().expect("lists of processes");
+                for process in lists.values_mut().filter_map(Value::as_array_mut).flatten() {
+                    if ["thermal_contact_process", "wear_process"].iter().any(|name| process["python_module"] == *name)
+                    {
+                        process["Parameters"]["axisymmetric"] = json!(around);
+                    }
+                }
+            },
+            |_| (),
+        );
+        assert!(said.contains("warning[contact-of-revolution]"), "{case}: {said}");
+    }
+}
+
+#[test]
+fn a_heat_face_that_is_listed_twice_is_told() {
+    let twice = |folder: &std::path::Path| {
+        let path = folder.join("slab.mdpa");
+        let mesh = std::fs::read_to_string(&path).expect("the mesh");
+        let first = "Begin Conditions LineCondition2D2N\n";
+        assert!(mesh.contains(first), "faces");
+        std::fs::write(&path, mesh.replacen(first, &format!("{first}9001 0 1 3\n"), 1)).expect("the mesh");
+    };
+    let said = check("examples/transient_slab", |_| (), twice);
+    assert!(said.contains("warning[listed-twice]") && said.contains("1 conditions"), "{said}");
+}
+
+#[test]
 fn tables_that_begin_late_or_lack_values_are_told() {
     let with = |rows: &str| {
         check("structural/load_table", |_| (), |folder| std::fs::write(folder.join("load.csv"), rows).expect("a table"))

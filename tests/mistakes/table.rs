@@ -677,7 +677,7 @@ pub const MISTAKES: &[Mistake] = &[
         exit: 0,
         told: Told::Before,
         code: "contact-of-revolution",
-        names: "pressures are off by 2πr",
+        names: "areas are off by 2πr",
     },
     Mistake {
         what: "a key of the steps",

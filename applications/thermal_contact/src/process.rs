@@ -49,7 +49,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let root = settings.get_str("model_part_name")?.to_owned();
     let across = laws.iter().any(|law| law.acts_apart());
     let thermal = ThermalContactSettings {
-        surfaces: FacingSurfaces::new(&settings, request.model.root_mut(&root)?, true, across)?,
+        surfaces: FacingSurfaces::new(&settings, request, true, across)?,
         interval: Interval::from_node(settings.get("interval")?)?,
         laws: laws.into(),
         touching: settings.get_positive("touching_gap")?,

@@ -134,12 +134,12 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let speed = Some(settings.get("sliding_speed")?).filter(|speed| speed.is_given());
     let interval = Interval::from_node(settings.get("interval")?)?;
     let root = settings.get_str("model_part_name")?.to_owned();
-    let part = request.model.root_mut(&root)?;
     let reading = SlidingSettings {
-        surfaces: FacingSurfaces::new(&settings, part, false, false)?,
+        surfaces: FacingSurfaces::new(&settings, request, false, false)?,
         speed: speed.map(ScalarValue::from_node).transpose()?,
         around: settings.get_bool("axisymmetric")?,
     };
+    let part = request.model.root_mut(&root)?;
     part.nodes.values.add(&WEAR_DEPTH);
     Ok(Box::new(WearProcess {
         limits: Limits::new(part, reading.surfaces.interfaces(), share),

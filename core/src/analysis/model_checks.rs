@@ -88,17 +88,12 @@ pub(super) fn warn_of_collapsed(part: &ModelPart, problems: &mut Report) {
     problems.push(Diagnostic::warning("collapsed-element", fact).remedy(remedy));
 }
 
-/// Whether the smallest part that holds the later of two conditions, below this one, holds both.
-fn share_part(part: &SubPart, [earlier, later]: &[u32; 2]) -> bool {
+/// Whether the smallest part that holds the later of two conditions, this one or one below it, holds both.
+fn share_part(part: &SubPart, pair: &[u32; 2]) -> bool {
+    let [earlier, later] = pair;
     let holds = |part: &SubPart, at: &u32| part.conditions.binary_search(at).is_ok();
     let below = part.children.values().filter(|child| holds(child, later)).min_by_key(|child| child.conditions.len());
-    below.is_some_and(|child| {
-        holds(child, earlier) && (share_part(child, &[*earlier, *later]) || is_smallest(child, later))
-    })
-}
-
-fn is_smallest(part: &SubPart, at: &u32) -> bool {
-    part.children.values().all(|child| child.conditions.binary_search(at).is_err())
+    below.is_none_or(|child| holds(child, earlier) && share_part(child, pair))
 }
 
 /// Entities with the nodes of an earlier one, conditions of the same kind: the earlier and the later.

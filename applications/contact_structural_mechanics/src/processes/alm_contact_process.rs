@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use zelus_core::diagnostics::{Diagnostic, Report, Severity};
+use zelus_core::diagnostics::{Diagnostic, Report};
 use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
@@ -12,7 +12,9 @@ use zelus_core::{Error, Result};
 
 use super::friction_settings::friction_law;
 use super::interaction_process::InteractionProcess;
-use super::interface_settings::{check_analysis, check_positive, check_search, segmentation, without_computing_part};
+use super::interface_settings::{
+    check_analysis, check_positive, check_search, segmentation, warn_of_revolution, without_computing_part,
+};
 use crate::adaptation::{AdaptationSettings, ExplicitPenalty, PenaltyRule, UzawaSettings};
 use crate::compatibility::{FormulationUse, Refusal, refusal};
 use crate::friction::FrictionSettings;
@@ -270,7 +272,7 @@ fn interaction(
     };
     let part = request.model.root_mut(&whole.model_part_name)?;
     check_use(part, formulation, settings)?;
-    let warning = warn_of_revolution(part, settings)?;
+    let warning = warn_of_revolution(part, settings, "alternative_formulations.axisymmetric")?;
     check_variables(part, formulation, settings)?;
     let interaction = ContactInteraction::new(chosen, part)?;
     warning.into_iter().for_each(|warning| request.report.push(warning));
@@ -351,18 +353,6 @@ fn check_use(part: &ModelPart, formulation: &Formulation, settings: &Settings) -
     let Some(Refusal { reason, remedy }) = refusal(formulation, wanted) else { return Ok(()) };
     let key = if wanted.explicit || wanted.arc_length { "contact_type" } else { key };
     Err(settings.error(key, "contact-use", reason).remedy(remedy).into())
-}
-
-/// Bodies of revolution whose contact is taken for plane have 2πr times their pressure, and the other way round.
-fn warn_of_revolution(part: &ModelPart, settings: &Settings) -> Result<Option<Diagnostic>> {
-    let key = "alternative_formulations.axisymmetric";
-    let around = settings.get_bool(key)?;
-    let plane = part.info.domain_size == 2;
-    let mut kinds = part.elements.kinds.iter().filter(|kind| plane && kind.cell.is_some_and(|cell| cell.dim() == 2));
-    let Some(kind) = kinds.find(|kind| kind.of_revolution != around) else { return Ok(None) };
-    let fact = format!("\"axisymmetric\" is {around}, and bodies are made of {}: pressures are off by 2πr", kind.name);
-    let warning = Diagnostic { severity: Severity::Warning, ..settings.error(key, "contact-of-revolution", fact) };
-    Ok(Some(warning.remedy(format!("set \"axisymmetric\" of \"alternative_formulations\" to {}", !around))))
 }
 
 /// The solver gives the nodes the variables of its `mortar_type`; another formulation's would be missing.

@@ -9,9 +9,9 @@ use zelus_core::Result;
 use zelus_core::model::ModelPart;
 use zelus_core::parallel;
 use zelus_core::parameters::{Node, Settings};
-use zelus_core::processes::NamedSurface;
+use zelus_core::processes::{NamedSurface, ProcessRequest};
 
-use super::interface_settings::{check_slaves, integration_order};
+use super::interface_settings::{check_slaves, integration_order, warn_of_revolution};
 use super::touching;
 use crate::interface::{Facet, Interface, Roles, interfaces};
 use crate::mortar::SegmentationSettings;
@@ -53,13 +53,17 @@ impl FacingPair<'_, '_> {
 
 impl FacingSurfaces {
     /// By the keys `contact_model_part`, `assume_master_slave`, `search_factor`, `integration_order` and
-    /// `normal_orientation_threshold`; `slivers` says whether overlaps of next to no size count, `across` whether facets face each
-    /// other at any distance: else `search_factor` is the search radius.
+    /// `normal_orientation_threshold`, on the part that `model_part_name` names; `slivers` says whether overlaps of next to no size
+    /// count, `across` whether facets face each other at any distance: else `search_factor` is the search radius.
+    ///
+    /// The report takes the warning that `axisymmetric` does not fit the bodies.
     ///
     /// # Errors
     /// Parts that do not exist or hold no facets, pairs without slaves, numbers out of range.
-    pub fn new(settings: &Settings, part: &mut ModelPart, slivers: bool, across: bool) -> Result<Self> {
+    pub fn new(settings: &Settings, request: &mut ProcessRequest<'_>, slivers: bool, across: bool) -> Result<Self> {
         let whole: FacingSurfacesKeys = settings.parse()?;
+        let part = request.model.root_mut(settings.get_str("model_part_name")?)?;
+        warn_of_revolution(part, settings, "axisymmetric")?.into_iter().for_each(|own| request.report.push(own));
         check_slaves(settings, "contact_model_part", &whole.contact_model_part, &whole.assume_master_slave)?;
         let search = SearchSettings {
             factor: settings.get_positive("search_factor")?,

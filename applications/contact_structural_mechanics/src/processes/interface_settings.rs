@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use zelus_core::Result;
-use zelus_core::diagnostics::did_you_mean;
+use zelus_core::diagnostics::{Diagnostic, Severity, did_you_mean};
 use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Defaults, Settings};
 
@@ -71,6 +71,21 @@ pub(super) fn check_analysis(settings: &Settings, part: &ModelPart) -> Result<()
     let fact = "\"analysis_type\" of the solver is \"linear\", and one solve cannot decide which nodes are in contact";
     let problem = settings.error("contact_type", "linear-contact", fact);
     Err(problem.remedy("set \"analysis_type\" to \"non_linear\"").into())
+}
+
+/// The warning that surfaces of bodies of revolution are taken for plane, or the reverse, by the setting `key`: areas then lack the
+/// factor 2πr, or have one too many.
+///
+/// # Errors
+/// A `key` that is neither true nor false.
+pub(super) fn warn_of_revolution(part: &ModelPart, settings: &Settings, key: &str) -> Result<Option<Diagnostic>> {
+    let around = settings.get_bool(key)?;
+    let plane = part.info.domain_size == 2;
+    let mut kinds = part.elements.kinds.iter().filter(|kind| plane && kind.cell.is_some_and(|cell| cell.dim() == 2));
+    let Some(kind) = kinds.find(|kind| kind.of_revolution != around) else { return Ok(None) };
+    let fact = format!("\"{key}\" is {around}, and bodies are made of {}: areas are off by 2πr", kind.name);
+    let warning = Diagnostic { severity: Severity::Warning, ..settings.error(key, "contact-of-revolution", fact) };
+    Ok(Some(warning.remedy(format!("set \"{key}\" to {}", !around))))
 }
 
 /// Every pair needs a slave side.
