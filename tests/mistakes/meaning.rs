@@ -208,6 +208,20 @@ fn a_heat_face_that_is_listed_twice_is_told() {
 }
 
 #[test]
+fn rows_of_tables_without_order_are_told() {
+    let reversed = |deck: &mut Value| *stepping(deck) = json!({"time_step_table": [[1.0, 0.5], [0.0, 0.5]]});
+    let said = check(PRESSED, reversed, |_| ());
+    assert!(said.contains("warning[table-rows]") && said.contains("goes back from 1 to 0 in row 2"), "{said}");
+    let rows = "time,pressure\n0.0,1.0e6\n4.0,2.0e6\n2.0,3.0e6\n";
+    let said = check(
+        "structural/load_table",
+        |_| (),
+        |folder| std::fs::write(folder.join("load.csv"), rows).expect("a table"),
+    );
+    assert!(said.contains("warning[table-rows]") && said.contains("load.csv goes back from 4 to 2"), "{said}");
+}
+
+#[test]
 fn tables_that_begin_late_or_lack_values_are_told() {
     let with = |rows: &str| {
         check("structural/load_table", |_| (), |folder| std::fs::write(folder.join("load.csv"), rows).expect("a table"))

@@ -86,7 +86,7 @@ impl TimeStepping {
             let problem = Diagnostic::warning("time-step", fact).at(node.key_place(last));
             warnings.push(problem.remedy("keep the one that is meant"));
         }
-        let rule = StepLength::from_node(node)?;
+        let rule = StepLength::from_node(node, warnings)?;
         if let Some(fact) = rule.overlap() {
             let problem = Diagnostic::warning("time-step", fact).at(node.key_place("time_step_intervals"));
             warnings.push(problem.remedy("let each interval end where the next begins"));
@@ -160,7 +160,7 @@ impl TimeStepping {
 }
 
 impl StepLength {
-    fn from_node(node: &Node) -> Result<Self> {
+    fn from_node(node: &Node, warnings: &mut Report) -> Result<Self> {
         if let Some(step) = node.get("time_step") {
             let length = step.f64()?;
             if !(length > 0.0 && length.is_finite()) {
@@ -184,6 +184,8 @@ impl StepLength {
                 }
             }
             if !points.is_empty() {
+                let fault = Table::fault("\"time_step_table\"", &points);
+                fault.into_iter().for_each(|fault| warnings.push(fault.at(table.place())));
                 return Ok(Self::Table(Table::new(points)));
             }
         }

@@ -212,6 +212,9 @@ impl Import<'_> {
                         self.push(table.line, unknown_variable(name));
                     }
                 }
+                if let Some(fault) = Table::fault(&table.output_variable, &table.rows) {
+                    self.push(table.line, fault);
+                }
                 let names = (table.input_variable.clone(), table.output_variable.clone());
                 properties.tables.insert(names, Table::new(table.rows.clone()));
             }

@@ -196,7 +196,8 @@ fn read_material(material: &Node, properties: &mut Properties, domain_size: usiz
         }
     }
     for member in material.get("Tables").and_then(Node::as_object).into_iter().flat_map(|o| o.in_source_order()) {
-        if let Some((names, table)) = report.absorb(table(&member.node)) {
+        let read = table(&member.key, &member.node, report);
+        if let Some((names, table)) = report.absorb(read) {
             for name in [&names.0, &names.1] {
                 if kind_of(name).is_none() {
                     report.push(unknown_variable(name).at(member.node.place()));
@@ -253,9 +254,9 @@ fn value(node: &Node, kind: VariableKind) -> Result<PropertyValue> {
     })
 }
 
-fn table(node: &Node) -> Result<((String, String), Table)> {
-    let name = |key: &str| Ok::<_, crate::Error>(last_of_path(node.require(key)?.str()?).to_owned());
-    let names = (name("input_variable")?, name("output_variable")?);
+fn table(name: &str, node: &Node, report: &mut Report) -> Result<((String, String), Table)> {
+    let variable = |key: &str| Ok::<_, crate::Error>(last_of_path(node.require(key)?.str()?).to_owned());
+    let names = (variable("input_variable")?, variable("output_variable")?);
     let mut points = Vec::new();
     for row in node.require("data")?.array()? {
         match row.array()? {
@@ -266,5 +267,6 @@ fn table(node: &Node) -> Result<((String, String), Table)> {
             }
         }
     }
+    Table::fault(&format!("{name:?}"), &points).into_iter().for_each(|fault| report.push(fault.at(node.place())));
     Ok((names, Table::new(points)))
 }

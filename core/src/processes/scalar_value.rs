@@ -53,7 +53,7 @@ impl ScalarValue {
             return Ok(Self::Expression(Expression::from_node(node)?));
         }
         if node.as_object().is_some() {
-            return read_csv(node).map(|(table, _)| Self::Table(table));
+            return read_csv(node).map(|csv| Self::Table(csv.table));
         }
         let fact = format!("a value must be a number, a function or a table, found {} ({node})", node.value.kind());
         let remedy = "write e.g. 1.0 or \"2.0*t\" or {\"name\": \"csv_table\", \"filename\": \"load.csv\"}";
@@ -105,10 +105,12 @@ pub(crate) fn time_tables_of(deck: &Node, interval: Interval, tables: &mut Vec<T
     let own = deck.get("interval").and_then(|node| Interval::from_node(node).ok()).unwrap_or(interval);
     if deck.get("name").and_then(Node::as_str) == Some("csv_table")
         && let Some(name) = deck.get("filename").and_then(Node::as_str)
-        && let Ok((table, missing)) = read_csv(deck)
+        && let Ok(CsvTable { table, missing, fault }) = read_csv(deck)
     {
-        let used = TimeTable::new(name, deck.key_place("filename"), &table, own);
-        tables.extend(used.map(|used| TimeTable { missing, ..used }));
+        let place = deck.key_place("filename");
+        let fault = fault.map(|fault| fault.at(place.clone()));
+        let used = TimeTable::new(name, place, &table, own);
+        tables.extend(used.map(|used| TimeTable { missing, fault, ..used }));
     }
     let members = deck.as_object().into_iter().flat_map(|members| members.iter().map(|member| &member.node));
     members.chain(deck.as_array().into_iter().flatten()).for_each(|inner| time_tables_of(inner, own, tables));
@@ -119,8 +121,16 @@ fn table_file(node: &Node, name: &str) -> PathBuf {
     node.place().file.parent().unwrap_or(Path::new("")).join(name)
 }
 
-/// The table, and how many of its cells are empty and count as the default of `na_replace`.
-fn read_csv(node: &Node) -> Result<(Table, usize)> {
+/// A table of a file.
+struct CsvTable {
+    table: Table,
+    /// Cells that are empty, and count as the default of `na_replace`.
+    missing: usize,
+    /// The warning that its rows are not in order.
+    fault: Option<Diagnostic>,
+}
+
+fn read_csv(node: &Node) -> Result<CsvTable> {
     let defaults = match &*CSV_DEFAULTS {
         Ok(defaults) => defaults,
         Err(problem) => return Err(Diagnostic::error("invalid-json", problem.to_string()).into()),
@@ -141,7 +151,7 @@ fn read_csv(node: &Node) -> Result<(Table, usize)> {
 const NOT_AVAILABLE: [&str; 4] = ["", "n/a", "na", "-"];
 
 /// A table of two columns; "nan" is a missing value only where the deck says by what it is replaced.
-fn parse_csv(text: &str, csv: &CsvSettings, replaces_nan: bool, path: &Path) -> Result<(Table, usize)> {
+fn parse_csv(text: &str, csv: &CsvSettings, replaces_nan: bool, path: &Path) -> Result<CsvTable> {
     let mut missing = 0;
     let mut number = |cell: &str, row: usize| {
         let cell = cell.trim().trim_matches('"');
@@ -179,5 +189,6 @@ fn parse_csv(text: &str, csv: &CsvSettings, replaces_nan: bool, path: &Path) -> 
         let problem = Diagnostic::error("invalid-table", "the table has no rows").at(Place::file(path));
         return Err(problem.remedy("give at least one row \"time, value\"").into());
     }
-    Ok((Table::new(points), missing))
+    let fault = Table::fault(&csv.filename, &points);
+    Ok(CsvTable { table: Table::new(points), missing, fault })
 }

@@ -15,6 +15,8 @@ pub struct TimeTable {
     pub begin: (f64, bool),
     /// Last time of the table, and whether its values change there: beyond it they continue with the last slope.
     pub end: (f64, bool),
+    /// The warning that its rows are not in order, where that is so.
+    pub fault: Option<Diagnostic>,
     /// Cells that are empty, and count as zero since the deck does not say by what they are replaced.
     pub missing: usize,
     /// When its process acts.
@@ -30,7 +32,8 @@ impl TimeTable {
         let [.., before, last] = table.points.as_slice() else { return None };
         let (first, second) = (table.points[0], table.points[1]);
         let begin = (first[0], first[1] != second[1]);
-        Some(Self { name: name.to_owned(), place, begin, end: (last[0], before[1] != last[1]), missing: 0, interval })
+        let end = (last[0], before[1] != last[1]);
+        Some(Self { name: name.to_owned(), place, begin, end, fault: None, missing: 0, interval })
     }
 
     /// The warning that it has empty cells.

@@ -34,6 +34,7 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
     let middle = 0.5 * (schedule.start_time + schedule.end_time);
     let early = tables.iter().filter_map(|table| table.ends_early(schedule.interval()));
     early.for_each(|problem| problems.push(problem));
+    tables.iter().filter_map(|table| table.fault.clone()).for_each(|problem| problems.push(problem));
     tables.iter().filter_map(|table| table.lacks_values()).for_each(|problem| problems.push(problem));
     if let Some(first) = schedule.first_step_end() {
         let late = tables.iter().filter_map(|table| table.begins_late([first, schedule.end_time]));
