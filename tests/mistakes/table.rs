@@ -850,6 +850,41 @@ pub const MISTAKES: &[Mistake] = &[
         names: "json_output_process writes TEMPERATURE as zeros",
     },
     Mistake {
+        what: "an output whose interval is longer than the run",
+        case: PRESSED,
+        make: |Files { deck, .. }| {
+            deck["output_processes"]["pictures"] = json!([{"python_module": "vtu_output_process", "Parameters": {
+                "model_part_name": "Structure", "output_interval": 1e30}}]);
+        },
+        exit: 0,
+        told: Told::Run,
+        code: "no-output",
+        names: "no step of the run is one of its interval of output",
+    },
+    Mistake {
+        what: "a history without variables",
+        case: PRESSED,
+        make: |Files { deck, .. }| {
+            deck["processes"]["json_output_process_list"][0]["Parameters"]["output_variables"] = json!([]);
+        },
+        exit: 0,
+        told: Told::Before,
+        code: "no-output",
+        names: "json_output_process writes no values of any step: it names no variable",
+    },
+    Mistake {
+        what: "a picture of a quantity that elements do not compute",
+        case: PRESSED,
+        make: |Files { deck, .. }| {
+            deck["output_processes"]["pictures"] = json!([{"python_module": "vtu_output_process", "Parameters": {
+                "model_part_name": "Structure", "gauss_point_variables_in_elements": ["TEMPERATURE_GRADIENT"]}}]);
+        },
+        exit: 0,
+        told: Told::Run,
+        code: "no-values",
+        names: "writes TEMPERATURE_GRADIENT as zeros: Gauss points of elements have no such values",
+    },
+    Mistake {
         what: "a penalty that changes nothing",
         case: PRESSED,
         make: |Files { deck, .. }| contact(deck)["advance_ALM_parameters"] = json!({"adapt_penalty": true}),

@@ -222,6 +222,11 @@ pub trait Process: Send {
         Vec::new()
     }
 
+    /// Warnings at the end of the run, e.g. of an output without numbers.
+    fn last_messages(&self, _model: &Model) -> Vec<Diagnostic> {
+        Vec::new()
+    }
+
     /// Files that it reads and writes: no output may be an input or another output, and no other run may write it meanwhile.
     fn files(&self) -> Vec<FileUse> {
         Vec::new()

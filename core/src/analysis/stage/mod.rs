@@ -218,7 +218,8 @@ impl Stage {
                 self.largest.see(part, &self.system);
             }
             last.extend(self.largest.warnings(part));
-            tell(part.ranks.problems_of_all(last), run.report, run.monitor);
+            last.extend(self.processes.iter().flat_map(|process| process.last_messages(run.model)));
+            tell(run.model.ranks.problems_of_all(last), run.report, run.monitor);
             return Ok(false);
         }
         let length = self.strategy.step_length(part, &self.system, self.schedule.stepping.next(time)?)?;

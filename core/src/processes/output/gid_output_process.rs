@@ -9,7 +9,7 @@ use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 use super::control::OutputControl;
 use super::gauss;
 use super::output_columns::{CellChoice, Mesh};
-use super::part_path::{PartPath, append, one_of, warn_unused};
+use super::part_path::{NO_STEP, PartPath, append, no_output, one_of, warn_unused};
 use super::quantity::{GaussQuantity, Quantity, flag_column, flag_list};
 use crate::assembly::System;
 use crate::communication::Ranks;
@@ -44,6 +44,7 @@ struct GidOutput {
     flags: Vec<&'static str>,
     gauss: Vec<GaussQuantity>,
     written: Vec<PathBuf>,
+    messages: Vec<Diagnostic>,
     /// The meshes of the one file for all steps, until the first is written.
     first: Option<Vec<(GidKind, Dataset)>>,
 }
@@ -78,6 +79,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         flags: flag_list(settings, &key("nodal_flags_results"), request.report)?,
         gauss: GaussQuantity::shown(settings, &key("gauss_point_results"), request.report)?,
         written: Vec::new(),
+        messages: Vec::new(),
         first: None,
     }))
 }
@@ -227,6 +229,12 @@ impl Process for GidOutput {
         let label = self.label(part);
         let (ids, columns, gauss) = self.results(part, system, selection);
         let path = self.path(label, "res");
+        if self.written.is_empty() {
+            let by = "gid_output_process";
+            let of_nodes = self.history.iter().chain(&self.values).filter_map(|own| own.missing_at_nodes(part, by));
+            let missing = of_nodes.chain(self.gauss.iter().filter_map(|own| own.missing(part, system, by)));
+            self.messages = missing.map(|warning| warning.at(self.part.place.clone())).collect();
+        }
         if !self.single {
             self.write_mesh(&part.ranks, &self.meshes(part, selection), label)?;
         } else if self.written.is_empty() {
@@ -245,6 +253,15 @@ impl Process for GidOutput {
         }
         self.control.written(&part.info);
         Ok(())
+    }
+
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.messages)
+    }
+
+    fn last_messages(&self, _model: &Model) -> Vec<Diagnostic> {
+        let is_idle = self.body && self.written.is_empty();
+        is_idle.then(|| no_output("gid_output_process", NO_STEP, &self.part.place)).into_iter().collect()
     }
 
     fn state(&self) -> Option<Box<dyn State>> {

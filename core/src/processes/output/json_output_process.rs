@@ -10,16 +10,19 @@ use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
 use super::control::TimeCounter;
 use super::gauss;
-use super::part_path::{PartPath, file_of};
+use super::part_path::{NO_STEP, NO_VARIABLE, PartPath, file_of, no_output};
 use super::quantity::{GaussQuantity, Quantity, flag_setting};
 use crate::assembly::System;
-use crate::diagnostics::{Diagnostic, Place, Result, unfit};
+use crate::diagnostics::{Diagnostic, Place, Report, Result, unfit};
 use crate::entities::Gauss;
 use crate::io::{FileUse, Mark, replace_file};
 use crate::model::{EntityRole, Flags, Model, ModelPart, SubPart};
 use crate::parameters::Defaults;
 use crate::processes::{Process, ProcessEntry, ProcessRequest};
 use crate::register;
+
+/// Its registered name.
+const NAME: &str = "json_output_process";
 
 /// How often at most the file is rewritten while the run goes on; at its end it is in any case.
 const REWRITE: Duration = Duration::from_secs(10);
@@ -115,6 +118,11 @@ pub(super) fn node_key(id: usize) -> String {
 }
 
 impl JsonOutput {
+    /// Whether all its lists of variables are empty.
+    fn names_nothing(&self) -> bool {
+        self.quantities.is_empty() && self.gauss.is_empty()
+    }
+
     /// Makes keys for the nodes and elements that pass the filter and have none yet; collective.
     fn keys(&mut self, part: &ModelPart, selection: &SubPart) {
         let is_new = |node: &&u32| {
@@ -351,6 +359,12 @@ impl Process for JsonOutput {
         self.part.find(model).map(|_| ())
     }
 
+    fn check(&self, _model: &Model, _system: &System, warnings: &mut Report) -> Result<()> {
+        let idle = self.names_nothing().then(|| no_output(NAME, NO_VARIABLE, &self.place));
+        idle.into_iter().for_each(|warning| warnings.push(warning));
+        Ok(())
+    }
+
     fn before_loop(&mut self, model: &mut Model) -> Result<()> {
         let (part, selection) = self.part.find(model)?;
         self.keys(part, selection);
@@ -361,8 +375,7 @@ impl Process for JsonOutput {
         let (part, selection) = self.part.find(model)?;
         if self.counter.acts(&part.info) {
             if self.series.times.is_empty() {
-                let missing =
-                    self.quantities.iter().filter_map(|quantity| quantity.missing(part, "json_output_process"));
+                let missing = self.quantities.iter().filter_map(|quantity| quantity.missing_at_nodes(part, NAME));
                 self.messages = missing.map(|warning| warning.at(self.place.clone())).collect();
             }
             self.sample(part, system, selection);
@@ -375,6 +388,16 @@ impl Process for JsonOutput {
 
     fn messages(&mut self) -> Vec<Diagnostic> {
         std::mem::take(&mut self.messages)
+    }
+
+    fn last_messages(&self, model: &Model) -> Vec<Diagnostic> {
+        let Histories { times, nodes, elements, resultants, .. } = &self.series;
+        let is_empty = resultants.iter().all(Vec::is_empty)
+            && nodes.values().all(|node| node.values.is_empty())
+            && elements.values().flatten().all(Vec::is_empty);
+        let why = if times.is_empty() { NO_STEP } else { "no node or element of its part and flag has such values" };
+        let is_idle = is_empty && !self.names_nothing() && model.ranks.is_root();
+        is_idle.then(|| no_output(NAME, why, &self.place)).into_iter().collect()
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
@@ -433,7 +456,7 @@ impl Process for JsonOutput {
     }
 }
 
-register! { ProcessEntry "json_output_process",
+register! { ProcessEntry NAME,
     aliases: &["JsonOutputProcess"],
     about: "writes histories of nodes and Gauss points to a JSON file",
     defaults: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../configs/processes/json_output_process.json")),

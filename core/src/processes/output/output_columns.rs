@@ -176,6 +176,19 @@ impl OutputColumns {
         lists::check(part, system, place, &self.history, &self.values, &self.extrapolated)
     }
 
+    /// Warnings of quantities that nothing computes, which pictures show as zeros; asked in a step. Collective.
+    pub(super) fn missing(&self, part: &ModelPart, system: &System) -> Vec<Diagnostic> {
+        let by = "output of pictures";
+        let of_nodes = self.history.iter().chain(&self.values).filter_map(|own| own.missing_at_nodes(part, by));
+        let of_elements = self.element_values.iter();
+        let of_elements = of_elements.filter_map(|own| own.missing(&[&part.elements.data], "elements have", by));
+        let of_conditions = self.condition_values.iter();
+        let of_conditions =
+            of_conditions.filter_map(|own| own.missing(&[&part.conditions.data], "conditions have", by));
+        let gauss = self.extrapolated.iter().chain(&self.gauss).filter_map(|own| own.missing(part, system, by));
+        of_nodes.chain(of_elements).chain(of_conditions).chain(gauss).collect()
+    }
+
     /// The picture of one part now, of several ranks the piece of each; collective.
     pub(super) fn draw(&self, part: &ModelPart, system: &System, selection: &SubPart) -> Mesh {
         let mut mesh = Mesh::new(part, selection, self.choice, self.deformed);

@@ -11,7 +11,7 @@ use crate::parameters::Settings;
 pub(super) struct PartPath {
     /// Full dotted path.
     pub(super) path: String,
-    place: Place,
+    pub(super) place: Place,
 }
 
 impl PartPath {
@@ -39,6 +39,19 @@ impl PartPath {
         found.map_err(|error| error.at(&self.place))
     }
 }
+
+/// The warning that an output holds no values, by the process `by`, since `why`.
+pub(super) fn no_output(by: &str, why: &str, place: &Place) -> Diagnostic {
+    let fact = format!("{by} writes no values of any step: {why}");
+    let remedy = "correct part, variables, flag or interval of the output, or remove the process";
+    Diagnostic::warning("no-output", fact).at(place.clone()).remedy(remedy)
+}
+
+/// Reason why an output has no values, where its steps lie beyond the run.
+pub(super) const NO_STEP: &str = "no step of the run is one of its interval of output";
+
+/// Reason why an output has no values, where its lists are empty.
+pub(super) const NO_VARIABLE: &str = "it names no variable";
 
 /// One of the words a setting may be.
 ///

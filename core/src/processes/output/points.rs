@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
-use super::part_path::{PartPath, one_of};
+use super::part_path::{NO_VARIABLE, PartPath, no_output, one_of};
 use super::quantity::Quantity;
 use crate::assembly::System;
-use crate::diagnostics::{Diagnostic, Error, Place, Result, coordinates};
+use crate::diagnostics::{Diagnostic, Error, Place, Report, Result, coordinates};
 use crate::geometry::{mapping, shape_functions};
 use crate::io::{FileUse, Mark, append_to_file, cut_file, length_of, replace_file};
 use crate::model::{EntityRole, Model, ModelPart, SubPart};
@@ -216,6 +216,12 @@ impl Process for PointsOutput {
         Ok(())
     }
 
+    fn check(&self, _model: &Model, _system: &System, warnings: &mut Report) -> Result<()> {
+        let idle = self.quantities.is_empty().then(|| no_output("output at points", NO_VARIABLE, &self.place));
+        idle.into_iter().for_each(|warning| warnings.push(warning));
+        Ok(())
+    }
+
     fn end_step(&mut self, model: &mut Model, _system: &System) -> Result<()> {
         let (part, _) = self.part.find(model)?;
         if !self.interval.contains(part.info.time) {
@@ -226,7 +232,8 @@ impl Process for PointsOutput {
                 replace_file(&part.ranks, &point.file, |out| writeln!(out, "{}", self.head(part, point)))
             })?;
             self.begun = true;
-            let missing = self.quantities.iter().filter_map(|quantity| quantity.missing(part, "output at points"));
+            let missing =
+                self.quantities.iter().filter_map(|quantity| quantity.missing_at_nodes(part, "output at points"));
             self.messages = missing.map(|warning| warning.at(self.place.clone())).collect();
         }
         let own = self.points.iter().enumerate().filter(|(_, point)| !point.weights.is_empty());

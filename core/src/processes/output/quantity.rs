@@ -1,10 +1,12 @@
 //! Named quantities of nodes and entities, read into columns.
 
+use super::gauss::is_known;
+use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report, Result};
 use crate::io::results::Column;
 use crate::io::variable_names::{not_computed, unknown_variable};
 use crate::model::flags::flag;
-use crate::model::{Field, Fields, Flags, ModelPart, Named, VariableKind, named, variables};
+use crate::model::{EntityRole, Field, Fields, Flags, ModelPart, Named, VariableKind, named, variables};
 use crate::parameters::Settings;
 
 /// A variable, or a component of one, that a column may hold.
@@ -48,15 +50,14 @@ impl Quantity {
     }
 
     /// The warning that nodes have it in no column, so that it reads as zero; `by` names the process.
-    pub(super) fn missing(&self, part: &ModelPart, by: &str) -> Option<Diagnostic> {
-        let column = self.variable.column().0;
-        if part.nodes.history.has(column) || part.nodes.values.has(column) {
-            return None;
-        }
-        let fact = format!("{by} writes {} as zeros: nodes have no such values", self.name);
-        let remedy =
-            "take it out of \"output_variables\", or name it in \"gauss_points_output_variables\" if elements know it";
-        Some(Diagnostic::warning("no-values", fact).remedy(remedy))
+    pub(super) fn missing_at_nodes(&self, part: &ModelPart, by: &str) -> Option<Diagnostic> {
+        self.missing(&[&part.nodes.history, &part.nodes.values], "nodes have", by)
+    }
+
+    /// The warning that none of the columns of `whose` hold it, e.g. "nodes have".
+    pub(super) fn missing(&self, columns: &[&Fields], whose: &str, by: &str) -> Option<Diagnostic> {
+        let is_there = columns.iter().any(|fields| fields.has(self.variable.column().0));
+        (!is_there).then(|| no_values(&self.name, whose, by))
     }
 
     /// How many numbers it takes; a quantity that is nowhere stored reads as zero.
@@ -115,6 +116,12 @@ impl GaussQuantity {
         Ok(Self { name: name.to_owned(), vector })
     }
 
+    /// The warning that no element of any rank knows it, so that it reads as zero; `by` names the process. Collective.
+    pub(super) fn missing(&self, part: &ModelPart, system: &System, by: &str) -> Option<Diagnostic> {
+        let is_known = part.ranks.any(is_known(system, EntityRole::Element, self));
+        (!is_known).then(|| no_values(&self.name, "Gauss points of elements have", by))
+    }
+
     /// As [`Quantity::shown`].
     pub(super) fn shown(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<Self>> {
         each(settings, key, report, true, Self::new)
@@ -124,6 +131,13 @@ impl GaussQuantity {
     pub(super) fn list(settings: &Settings, key: &str, report: &mut Report) -> Result<Vec<Self>> {
         each(settings, key, report, false, Self::new)
     }
+}
+
+/// The warning that a quantity is written as zeros.
+fn no_values(name: &str, whose: &str, by: &str) -> Diagnostic {
+    let fact = format!("{by} writes {name} as zeros: {whose} no such values");
+    let remedy = "take it out of the list, or name it in that of Gauss points if elements know it";
+    Diagnostic::warning("no-values", fact).remedy(remedy)
 }
 
 /// The flags a list of the deck names; problems go to `report`.

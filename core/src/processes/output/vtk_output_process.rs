@@ -8,7 +8,7 @@ use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 use super::control::{IntervalUnit, OutputControl};
 use super::format::{OutputFormat, OutputFormatEntry, OutputFrame, SurfaceFrame, surface_series};
 use super::output_columns::OutputColumns;
-use super::part_path::PartPath;
+use super::part_path::{NO_STEP, PartPath, no_output};
 use super::surfaces::surfaces;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Place, Report, Result};
@@ -35,6 +35,9 @@ struct VtkOutput {
     in_folder: bool,
     /// Whether pictures of an earlier run are still to be removed.
     clears: bool,
+    /// Whether the pictures of steps have points; `None` before the first.
+    has_points: Option<bool>,
+    messages: Vec<Diagnostic>,
     prefix: String,
     postfix: String,
     decimals: usize,
@@ -86,6 +89,8 @@ fn build(request: &mut ProcessRequest<'_>, is_vtu: bool) -> Result<Box<dyn Proce
         folder,
         in_folder,
         clears: in_folder,
+        has_points: None,
+        messages: Vec::new(),
         prefix: settings.get_str("custom_name_prefix")?.to_owned(),
         postfix: settings.get_str("custom_name_postfix")?.to_owned(),
         decimals,
@@ -226,6 +231,12 @@ impl Process for VtkOutput {
     fn print_output(&mut self, model: &mut Model, system: &System) -> Result<()> {
         let pictures = self.draw(model, system)?;
         self.write(model, &pictures)?;
+        if self.has_points.is_none() {
+            let part = self.part.find(model)?.0;
+            self.has_points = Some(part.ranks.any(pictures.iter().any(|picture| !picture.data.points.is_empty())));
+            let missing = self.picture.missing(part, system).into_iter();
+            self.messages.extend(missing.map(|warning| warning.at(self.part.place.clone())));
+        }
         self.clears = false;
         self.control.written(&self.part.find(model)?.0.info);
         Ok(())
@@ -253,13 +264,27 @@ impl Process for VtkOutput {
         Ok(())
     }
 
+    fn messages(&mut self) -> Vec<Diagnostic> {
+        std::mem::take(&mut self.messages)
+    }
+
+    fn last_messages(&self, _model: &Model) -> Vec<Diagnostic> {
+        let why = match self.has_points {
+            Some(true) => return Vec::new(),
+            Some(false) => "its part has no nodes",
+            None => NO_STEP,
+        };
+        vec![no_output("output of pictures", why, &self.part.place)]
+    }
+
     fn state(&self) -> Option<Box<dyn State>> {
         Some(Box::new(VtkOutputState { next: self.control.next, clears: self.clears, format: self.format.state() }))
     }
 
     fn resume(&mut self, _model: &mut Model, state: Box<dyn State>) -> Result<()> {
         let VtkOutputState { next, clears, format } = state.take()?;
-        (self.control.next, self.clears) = (next, clears);
+        // The saved run may have written.
+        (self.control.next, self.clears, self.has_points) = (next, clears, Some(true));
         format.map_or(Ok(()), |state| self.format.resume(state, &self.folder))
     }
 
