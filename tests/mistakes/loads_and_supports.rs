@@ -4,7 +4,7 @@ use serde_json::json;
 
 use crate::DECK;
 use crate::support::{read_json, root, said, scratch_copy, zelus};
-use crate::table::{PRESSED, contact, load};
+use crate::table::{PRESSED, contact, load, support};
 
 #[test]
 fn a_constraint_on_a_supported_node_is_refused() {
@@ -18,8 +18,10 @@ fn a_constraint_on_a_supported_node_is_refused() {
         );
         let (head, parts) = mesh.split_once("Begin SubModelPart").expect("parts");
         std::fs::write(&path, format!("{head}{constraint}Begin SubModelPart{parts}")).expect("a file");
-        let output = zelus(scratch.path(), &["run", DECK]);
-        (output.status.code(), said(&output))
+        let both = ["check", "run"].map(|command| zelus(scratch.path(), &[command, DECK]));
+        let [checked, run] = both.each_ref().map(|output| output.status.code());
+        assert_eq!(checked, run, "the check and the run agree: {}", said(&both[0]));
+        (run, said(&both[1]))
     };
     for (master, constant, why) in
         [(7, 0.0, "a support prescribes it"), (6, 1e-3, "gives it 0.001, and a support prescribes 0")]
@@ -57,6 +59,22 @@ fn a_load_on_nodes_that_no_condition_takes_is_named() {
     assert!(said.contains("warning[acts-on-nothing]") && said.contains("takes POINT_LOAD"), "{said}");
     let said = of_nodes("LINE_LOAD");
     assert!(!said.contains("acts-on-nothing"), "line loads read it at their nodes: {said}");
+}
+
+#[test]
+fn a_support_that_constrains_nothing_is_named() {
+    let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
+    let path = scratch.path().join(DECK);
+    let mut deck = read_json(&path).expect("the deck");
+    let mut check = |constrained: [bool; 3]| {
+        support(&mut deck)["constrained"] = json!(constrained);
+        std::fs::write(&path, serde_json::to_string_pretty(&deck).expect("JSON")).expect("a file");
+        said(&zelus(scratch.path(), &["check", DECK]))
+    };
+    let free = check([false; 3]);
+    assert!(free.contains("warning[acts-on-nothing]") && free.contains("a value that is not constrained"), "{free}");
+    let held = check([true, false, false]);
+    assert!(!held.contains("acts-on-nothing"), "{held}");
 }
 
 #[test]

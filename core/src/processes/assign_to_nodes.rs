@@ -12,7 +12,7 @@ use super::scalar_value::ScalarValue;
 use super::target::Target;
 use crate::assembly::{DofTable, System};
 use crate::diagnostics::{Diagnostic, Report, Result};
-use crate::model::{Model, ModelPart, ScalarVariable};
+use crate::model::{Model, ModelPart, Rates, ScalarVariable};
 use crate::parameters::SpaceTime;
 
 /// Value prescribed for one unknown.
@@ -115,6 +115,14 @@ impl AssignToNodes {
         if let Some(lost) = WithoutEffect::in_the_plane(name, path, lost, of_value) {
             return Ok(Some(lost));
         }
+        if let Some(guess) = self.components.iter().find(|component| self.is_guess(part, component)) {
+            let is_whole = self.components.iter().all(|component| !component.fixed);
+            let fact = format!(
+                "{process} gives {} of {path} a value that is not constrained: in statics iterations only begin there",
+                guess.variable
+            );
+            return Ok(Some(WithoutEffect { fact, is_whole }));
+        }
         let loads: Vec<&str> =
             self.components.iter().filter(acts).map(|c| c.variable.column).filter(|column| is_load(column)).collect();
         if let Some(name) = loads.first()
@@ -124,6 +132,16 @@ impl AssignToNodes {
             return Ok(Some(WithoutEffect::whole(format!("no condition at the nodes of {path} takes {name}"))));
         }
         Ok(None)
+    }
+
+    /// Whether a value of steps is only the first iterate of an equilibrium. Zeros beside fixed components are no mistake.
+    fn is_guess(&self, part: &ModelPart, component: &NodalComponent) -> bool {
+        let history = &part.nodes.history;
+        let of_statics = |rates: &Rates| rates.moves_mesh && !history.has(rates.first);
+        let is_meant =
+            component.value.as_ref().is_some_and(|value| !value.is_zero() || self.components.iter().all(|c| !c.fixed));
+        let of_steps = self.target.interval.end > part.info.time;
+        !component.fixed && is_meant && of_steps && Rates::of(component.variable.column).is_some_and(of_statics)
     }
 
     /// Whether a condition at one of the nodes takes one of these loads from them.
