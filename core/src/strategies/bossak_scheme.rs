@@ -26,10 +26,6 @@ impl BossakScheme {
 
     fn from_settings(request: &SchemeRequest<'_>, alpha_m: f64) -> Result<Box<dyn Scheme>> {
         let settings = request.settings;
-        if !(-0.5..=0.0).contains(&alpha_m) {
-            let fact = format!("\"damp_factor_m\" is {alpha_m}, it must lie in [-0.5, 0]");
-            return Err(settings.error("damp_factor_m", "damp-factor", fact).into());
-        }
         let beta = settings.get_f64("newmark_beta")?;
         if beta <= 0.0 {
             let fact = format!("\"newmark_beta\" is {beta}, an implicit scheme needs a positive one");

@@ -58,17 +58,12 @@ impl ExplicitSettings {
     /// From the solver settings.
     ///
     /// # Errors
-    /// Values that make no sense, with their places.
+    /// Keys that are missing or of another type.
     pub fn new(settings: &Settings) -> Result<Self> {
-        let max_delta_time = settings.get_f64("max_delta_time")?;
-        if max_delta_time <= 0.0 {
-            let fact = format!("\"max_delta_time\" is {max_delta_time}, it must be positive");
-            return Err(settings.error("max_delta_time", "time-step", fact).remedy("1.0 is the usual value").into());
-        }
         Ok(Self {
             prediction_level: settings.get_usize("time_step_prediction_level")?,
             refresh: settings.get_usize("delta_time_refresh")?.max(1),
-            max_delta_time,
+            max_delta_time: settings.get_f64("max_delta_time")?,
             rayleigh: [settings.get_f64("rayleigh_alpha")?, settings.get_f64("rayleigh_beta")?],
             follow_prescribed: settings.get_bool("follow_prescribed_motion")?,
             compute_reactions: settings.get_bool("compute_reactions")?,

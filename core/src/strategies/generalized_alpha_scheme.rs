@@ -49,13 +49,7 @@ impl GeneralizedAlphaScheme {
     }
 
     fn from_settings(request: &SchemeRequest<'_>) -> Result<Box<dyn Scheme>> {
-        let rho = request.settings.get_f64("rho_inf")?;
-        if !(0.0..=1.0).contains(&rho) {
-            let fact = format!("\"rho_inf\" is {rho}, it must lie in [0, 1]");
-            let remedy = "1 keeps the energy, 0 removes the highest frequencies at once";
-            return Err(request.settings.error("rho_inf", "rho-inf", fact).remedy(remedy).into());
-        }
-        Ok(Box::new(Self::new(rho, request.rayleigh()?)))
+        Ok(Box::new(Self::new(request.settings.get_f64("rho_inf")?, request.rayleigh()?)))
     }
 }
 

@@ -311,12 +311,8 @@ fn explicit_penalty(settings: &Settings, request: &ProcessRequest<'_>) -> Result
     }
     let gap = match settings.get_bool("advance_explicit_parameters.manual_max_gap_theshold")? {
         false => None,
-        true => {
-            check_positive(settings, &["advance_explicit_parameters.max_gap_threshold"])?;
-            Some(settings.get_f64("advance_explicit_parameters.max_gap_threshold")?)
-        }
+        true => Some(settings.get_f64("advance_explicit_parameters.max_gap_threshold")?),
     };
-    check_positive(settings, &["advance_explicit_parameters.logistic_exponent_factor"])?;
     let most = settings.get_f64("advance_explicit_parameters.max_gap_factor")?;
     let exponent = settings.get_f64("advance_explicit_parameters.logistic_exponent_factor")?;
     Ok(Some(ExplicitPenalty { most, exponent, gap }))

@@ -126,55 +126,20 @@ register! { SolverExtensionEntry "contact_settings",
                 return Ok(None);
             }
             let factor = settings.get_f64("split_factor")?;
-            if factor <= 1.0 {
-                let fact = format!("\"split_factor\" is {factor}, it must be greater than 1");
-                let problem = settings.error("split_factor", "split-factor", fact);
-                return Err(problem.remedy("a step that fails is divided by it, e.g. 10.0").into());
-            }
             Ok(Some(Cutting { factor, times: settings.get_usize("max_number_splits")? as u32 }))
         },
         values: |settings| {
-            let key = "delta_time_factor_for_contact";
-            let factor = settings.get_f64(key)?;
-            if factor <= 0.0 || factor > 1.0 {
-                let fact = format!("\"{key}\" is {factor}, it must be above 0 and at most 1");
-                return Err(settings.error(key, "invalid-value", fact).remedy("0.5 is the usual value").into());
-            }
-            let mut values = vec![(DELTA_TIME_FACTOR, factor)];
-            for (key, name, usual) in [
-                ("impact_energy_tolerance", IMPACT_TOLERANCE, "1e-3"),
-                ("largest_energy_gain", LARGEST_ENERGY_GAIN, "0.1"),
-                ("largest_penetration", LARGEST_PENETRATION, "0.2"),
-                ("adjust_tolerance", ADJUST_TOLERANCE, "0.1"),
-            ] {
-                let share = settings.get_f64(key)?;
-                if share < 0.0 {
-                    let fact = format!("\"{key}\" is {share}, it must not be negative");
-                    let remedy = format!("{usual} is the usual value");
-                    return Err(settings.error(key, "invalid-value", fact).remedy(remedy).into());
-                }
-                values.push((name, share));
-            }
-            let key = "feature_angle";
-            let angle = settings.get_f64(key)?;
-            if !(angle > 0.0 && angle <= 180.0) {
-                let fact = format!("\"{key}\" is {angle}°, it must be above 0° and at most 180°");
-                let remedy = "65 is the usual value: corners of bodies end a contact patch, coarse round bodies do not";
-                return Err(settings.error(key, "invalid-value", fact).remedy(remedy).into());
-            }
-            values.push((CONTACT_FEATURE_ANGLE, angle));
-            for (key, name) in [
+            let keys = [
+                ("delta_time_factor_for_contact", DELTA_TIME_FACTOR),
+                ("impact_energy_tolerance", IMPACT_TOLERANCE),
+                ("largest_energy_gain", LARGEST_ENERGY_GAIN),
+                ("largest_penetration", LARGEST_PENETRATION),
+                ("adjust_tolerance", ADJUST_TOLERANCE),
+                ("feature_angle", CONTACT_FEATURE_ANGLE),
                 ("mixed_ulm_solver_parameters.dual_lm_off_node_tolerance", OFF_NODE_TOLERANCE),
                 ("mixed_ulm_solver_parameters.dual_lm_zero_row_tolerance", ZERO_ROW_TOLERANCE),
-            ] {
-                let tolerance = settings.get_f64(key)?;
-                if !(0.0..1.0).contains(&tolerance) {
-                    let fact = format!("\"{key}\" is {tolerance}, it must be at least 0 and below 1");
-                    return Err(settings.error(key, "invalid-value", fact).remedy("leave it at its default").into());
-                }
-                values.push((name, tolerance));
-            }
-            Ok(values)
+            ];
+            keys.into_iter().map(|(key, name)| Ok((name, settings.get_f64(key)?))).collect()
         },
         ..ExtensionDefinition::NOTHING
     },

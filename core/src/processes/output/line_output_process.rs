@@ -14,7 +14,6 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let count = settings.get_usize("sampling_points")?;
     let along = |share: f64| std::array::from_fn(|axis| start[axis] + share * (end[axis] - start[axis]));
     let points: Vec<[f64; 3]> = match count {
-        0 => return Err(settings.error("sampling_points", "wrong-size", "\"sampling_points\" is 0").into()),
         1 => vec![along(0.5)],
         _ => (0..count).map(|at| along(at as f64 / (count - 1) as f64)).collect(),
     };
