@@ -87,6 +87,10 @@ pub struct NewtonRaphson {
     stabilization_length: Option<f64>,
     /// Whether steps are stabilised from their first iteration on, since one has failed without that.
     stabilizes: bool,
+    /// Why the tangent of the step was singular, in this attempt or one before.
+    singular_cause: Option<String>,
+    /// Whether a body moved on freely at the end of the last step, with contact stabilisation.
+    unrestrained: bool,
     pub(super) root_gather: RootGather,
     phases: Phases,
     /// Whether the last step ended at a singular system.
@@ -187,12 +191,12 @@ impl SolutionStrategy for NewtonRaphson {
         system: &mut System,
         monitor: &mut dyn Monitor,
     ) -> Result<StepRecord> {
-        self.singular = false;
+        (self.singular, self.unrestrained) = (false, false);
         self.coarse = None;
         let record = recorded(part, system, |part, system| self.iterate(part, system, monitor));
         self.failed = !record.as_ref().is_ok_and(|record| record.converged);
         let (coarse, balance) = (self.coarse.take(), self.balance.take());
-        Ok(StepRecord { singular: self.singular, coarse, balance, ..record? })
+        Ok(StepRecord { singular: self.singular, unrestrained: self.unrestrained, coarse, balance, ..record? })
     }
 
     fn finalize_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
@@ -207,6 +211,7 @@ impl SolutionStrategy for NewtonRaphson {
             self.measure_energy(part, system)?;
         }
         (self.searches, self.stabilizes) = (false, false);
+        self.singular_cause = None;
         self.energy_balance.accept();
         let start = Instant::now();
         let accepted = accept(part, system);
@@ -254,6 +259,8 @@ impl NewtonRaphson {
             assembler,
             stabilization_length: None,
             stabilizes: false,
+            singular_cause: None,
+            unrestrained: false,
             root_gather: RootGather::default(),
             failed: false,
             searches: false,

@@ -78,6 +78,9 @@ pub struct StepRecord {
     /// Whether it failed because the system of equations was singular.
     #[serde(skip)]
     pub singular: bool,
+    /// Whether a body moved on freely with contact stabilisation, so that a shorter step would not help.
+    #[serde(skip)]
+    pub unrestrained: bool,
     /// Why a shorter step would be better, though it converged.
     #[serde(skip)]
     pub coarse: Option<String>,

@@ -43,7 +43,7 @@ impl Stage {
             }
             let failure = record.failure.clone().unwrap_or_default();
             let can_cut = saved.is_some() && self.schedule.cutting.times > 0;
-            let other_way = if can_cut { self.strategy.other_way(&record) } else { None };
+            let other_way = if can_cut && !record.unrestrained { self.strategy.other_way(&record) } else { None };
             if let Some(how) = other_way {
                 run.monitor.note(&format!("step {} to time {to}: {failure}; retried {how}", record.step));
                 saved.expect("just asked for").restore(run.model.root_mut(&self.root)?, &mut self.system);
@@ -51,9 +51,13 @@ impl Stage {
             }
             let is_in_vain = failed.as_ref().is_some_and(|before| before.fails_like(&record))
                 && !self.system.interactions.iter_mut().filter_map(|i| i.retry()).any(|own| own.has_alternative());
+            let is_in_vain = is_in_vain || record.unrestrained;
             let Some(saved) = saved.filter(|_| !is_in_vain && lengths.cut(to - from)) else {
                 let tried = match self.schedule.cutting {
                     _ if !can_cut => "the solver does not cut steps".to_owned(),
+                    _ if record.unrestrained => {
+                        "the body moves on without meeting anything: a shorter step does not help".to_owned()
+                    }
                     _ if is_in_vain => "a shorter step failed in the same way: it is the same problem".to_owned(),
                     Cutting { times, factor } => {
                         format!("{times} cut{} of the step by {factor} did not help", if times == 1 { "" } else { "s" })

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::stabilization::Stabilization;
+use super::stabilization::{Stabilization, moves_freely};
 use super::{ENERGY_OF_MOTION, NewtonRaphson, References};
 use crate::assembly::System;
 use crate::communication::Ranks;
@@ -117,9 +117,12 @@ impl NewtonRaphson {
             }
         }
         let mut failure = self.explain(part, system, &step.records, &step.residual);
-        if let Some(Stabilization { cause: Some(cause), .. }) = &step.stabilization {
-            self.singular = true;
-            failure = format!("{cause}\n    with contact stabilization {failure}");
+        if step.stabilization.is_some() {
+            self.unrestrained = moves_freely(&step.records);
+            if let Some(cause) = &self.singular_cause {
+                self.singular = true;
+                failure = format!("{cause}\n    with contact stabilization {failure}");
+            }
         }
         let imbalance = step.imbalance.as_ref().map(Imbalance::fact);
         let failure = step.widened.iter().chain(&imbalance).fold(failure, |failure, why| format!("{failure}; {why}"));
@@ -168,7 +171,7 @@ impl NewtonRaphson {
             records: Vec::new(),
             relaxation: relaxation(&system.interactions),
             relaxed: None,
-            stabilization: if self.stabilizes { self.stabilization(None) } else { None },
+            stabilization: if self.stabilizes { self.stabilization() } else { None },
             widened: None,
             imbalance: None,
             last: self.allowed().0,
@@ -263,6 +266,11 @@ impl NewtonRaphson {
         match (self.settings.linear, verdict.converged && change.count() == 0) {
             (true, _) => Ok(IterationEnd::Converged),
             (false, false) => Ok(IterationEnd::Continue),
+            // One iteration without stabilisation shows whether contact restrains all bodies now.
+            (false, true) if step.stabilization.take().is_some() => {
+                step.last = step.last.max(iteration + 1);
+                Ok(IterationEnd::Continue)
+            }
             (false, true) => self.judge_converged(iteration, step, part, system, monitor),
         }
     }
@@ -289,7 +297,8 @@ impl NewtonRaphson {
             && let Some(cause) = self.unrestrained(&solved, part, system)
         {
             // Later iterates have followed a tangent that let a body go: such a step begins anew.
-            step.stabilization = self.stabilization(Some(cause.clone())).filter(|_| iteration == 1);
+            step.stabilization = self.stabilization().filter(|_| iteration == 1);
+            self.singular_cause = Some(cause.clone());
             if step.stabilization.is_some() {
                 let stabilized = self.solve_again(iteration, step, part, system, monitor);
                 if stabilized.is_ok() {
@@ -357,7 +366,7 @@ impl NewtonRaphson {
             self.refer_to_start(part, system, &step.residual, &mut step.references)?;
         }
         if let Some(stabilization) = &mut step.stabilization {
-            self.stabilize(stabilization, part, system, &step.residual)?;
+            self.stabilize(stabilization, part, system, &step.residual, &step.records)?;
         }
         let rhs = self.assembler.equations().reduce(&step.residual);
         if iteration == 1 {

@@ -7,7 +7,7 @@
 //!
 //! with the residual r, the load F_b of the body (its resultant, or the sum of |f| over the forces f of its conditions where that is
 //! more), the number N_b of these unknowns, a length d and ε = 1e-8. A body that nothing restrains so moves
-//! by about d an iteration in the direction of its load until contact meets it. Only the tangent is changed: the converged state obeys
+//! by about d an iteration in the direction of its load until contact meets it, and by more once it has met nothing for some. Only the tangent is changed: the converged state obeys
 //! the equations of the step, and A does no work. As A vanishes with r, the iteration converges superlinearly once contact holds.
 //! Where the responses of the interface can be computed, its states are decided on together in each iteration
 //! ([`super::joint_decision`]): K + A is regular, so that the complementarity problem has one solution.
@@ -18,21 +18,26 @@ use crate::diagnostics::Result;
 use crate::model::{ModelPart, NumberedBodies};
 use crate::strategies::dof_name::DofName;
 use crate::strategies::linear_solve::{Failed, Solved};
+use crate::strategies::records::IterationRecord;
 use crate::vector3::norm;
 
-/// Share of the diagonal entries that is added to them in any case: motions without load, as the spin of a round body without
-/// friction, stay where they are.
+/// Share of the diagonal entries that is added to them in any case: motions without load stay where they are.
 const LEAST: f64 = 1e-8;
 
 /// Share of [`runaway_bound`] that no increment of a restrained body exceeds.
 const RUNAWAY: f64 = 0.01;
 
+/// Iterations in which a body moves on freely before nothing is taken to stop it, and relative change of the residual meanwhile.
+const FREE: usize = 20;
+const STEADY: f64 = 0.01;
+/// Iterations of free motion after which the length doubles in each, and its largest factor.
+const SLOW: usize = 5;
+const FASTEST: f64 = 8.0;
+
 /// Contact stabilisation of a step.
 pub(super) struct Stabilization {
     /// Length that a body moves by in an iteration.
     length: f64,
-    /// Why the tangent was singular, if it was.
-    pub cause: Option<String>,
     /// Load of each body; none before the first solve.
     loads: Vec<f64>,
     /// Amount for the diagonal entry of each unknown; `None` where it is no displacement of a body.
@@ -77,12 +82,12 @@ impl NewtonRaphson {
         sets.filter_map(|set| set.stabilization_length(part)).reduce(f64::min).filter(|length| *length > 0.0)
     }
 
-    /// Contact stabilisation of the step, where it may be stabilised; `cause` is why the tangent was singular, if it was.
-    pub(super) fn stabilization(&self, cause: Option<String>) -> Option<Stabilization> {
-        self.stabilization_length.map(|length| Stabilization { length, cause, loads: Vec::new(), amounts: Vec::new() })
+    /// Contact stabilisation of the step, where it may be stabilised.
+    pub(super) fn stabilization(&self) -> Option<Stabilization> {
+        self.stabilization_length.map(|length| Stabilization { length, loads: Vec::new(), amounts: Vec::new() })
     }
 
-    /// Adds A to the tangent; `residual` over all unknowns. Collective.
+    /// Adds A to the tangent; `residual` over all unknowns, `records` of the step's iterations so far. Collective.
     ///
     /// # Errors
     /// A load that cannot be computed.
@@ -92,7 +97,9 @@ impl NewtonRaphson {
         part: &ModelPart,
         system: &System,
         residual: &[f64],
+        records: &[IterationRecord],
     ) -> Result<()> {
+        let length = own.length * 2.0_f64.powi(free_iterations(records).saturating_sub(SLOW) as i32).min(FASTEST);
         let bodies = self.bodies.get_or_insert_with(|| NumberedBodies::of(part));
         let dofs = system.dofs.dofs();
         let body_of = |n: usize| {
@@ -120,7 +127,7 @@ impl NewtonRaphson {
         part.ranks.sum(sums.as_flattened_mut());
         let amount = |body: usize| {
             let [residual, count] = sums[body];
-            own.loads[body].min(residual) / (count.max(1.0) * own.length)
+            own.loads[body].min(residual) / (count.max(1.0) * length)
         };
         own.amounts =
             body_of.iter().enumerate().map(|(n, body)| body.filter(|_| equations.is_free(n)).map(amount)).collect();
@@ -132,4 +139,21 @@ impl NewtonRaphson {
     pub(super) fn add(&mut self, own: &Stabilization) {
         self.assembler.add_to_diagonal(&|n, entry| own.amounts[n].map_or(0.0, |amount| amount + LEAST * entry));
     }
+}
+
+/// Whether a body moved on freely at the end of a stabilised step.
+pub(super) fn moves_freely(records: &[IterationRecord]) -> bool {
+    free_iterations(records) >= FREE
+}
+
+/// The last iterations in which a body moved on freely: no state changed, and neither did the residual.
+fn free_iterations(records: &[IterationRecord]) -> usize {
+    let Some(last) = records.last().and_then(|last| last.checks.first()).filter(|last| !last.converged) else {
+        return 0;
+    };
+    let alike = |own: &&IterationRecord| {
+        let same = own.checks.first().is_some_and(|check| (check.ratio - last.ratio).abs() <= STEADY * last.ratio);
+        own.active_set_changes == 0 && same
+    };
+    records.iter().rev().take_while(alike).count()
 }
