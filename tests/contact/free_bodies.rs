@@ -165,12 +165,11 @@ const PRESSURE: f64 = 1.0;
 /// Young's modulus, so that the block hardly deforms: strains are 1e-5.
 const STIFF: f64 = 1e5;
 /// Iterations of the step at most.
-const MOST: usize = 30;
+const MOST: usize = 10;
 
 /// A block whose lower side rises by [`SLOPE`] to the right, above a table.
 #[derive(Debug, Clone, Copy)]
 struct Wedge {
-    formulation: [&'static str; 3],
     /// Cells along the sides of block and table.
     cells: [usize; 2],
     quadratic: bool,
@@ -205,12 +204,8 @@ impl Wedge {
         let nodes = own.0.clone();
         let deck = Deck { mesh, joint: Joint::Frictionless, supports, pressure: PRESSURE, young: STIFF, steps: 1 };
         deck.write(folder, |deck| {
-            let [condition, process, kind] = self.formulation;
-            deck["solver_settings"]["contact_settings"] = json!({"mortar_type": condition});
+            deck["solver_settings"]["contact_settings"] = json!({"mortar_type": "ALMContactFrictionless"});
             deck["solver_settings"]["residual_relative_tolerance"] = json!(1e-6);
-            let contact = &mut deck["processes"]["contact_process_list"][0];
-            contact["python_module"] = json!(process);
-            contact["Parameters"]["contact_type"] = json!(kind);
             deck["processes"]["json_output_process_list"] = json!([]);
         });
         nodes
@@ -240,18 +235,12 @@ impl Wedge {
 /// height above the table, up to strains of 1e-5, and the table carries the load. The first tangent is singular.
 #[test]
 fn a_wedge_tilts_until_it_lies_flat() {
-    let formulations = [
-        ["ALMContactFrictionless", "alm_contact_process", "Frictionless"],
-        ["ALMContactFrictionlessComponents", "alm_contact_process", "FrictionlessComponents"],
-        ["PenaltyContactFrictionless", "penalty_contact_process", "Frictionless"],
-    ];
-    for formulation in formulations {
-        for (cells, quadratic, triangles) in [([6, 7], false, false), ([12, 15], false, true), ([5, 6], true, false)] {
-            for gap in [0.0, 1e-6, 0.01] {
-                let wedge = Wedge { formulation, cells, quadratic, triangles, gap };
-                let iterations = wedge.must_lie_flat();
-                println!("{wedge:?}: {iterations:?} iterations");
-            }
+    for (cells, quadratic, triangles) in [([6, 7], false, false), ([12, 15], false, true), ([5, 6], true, false)] {
+        for gap in [0.0, 1e-6, 0.01] {
+            let wedge = Wedge { cells, quadratic, triangles, gap };
+            let attempts = wedge.must_lie_flat();
+            println!("{wedge:?}: {attempts:?} iterations");
+            assert!(attempts.len() == 1 && attempts[0] <= MOST, "{wedge:?}: {attempts:?} iterations");
         }
     }
 }

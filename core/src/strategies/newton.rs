@@ -175,7 +175,8 @@ impl SolutionStrategy for NewtonRaphson {
     }
 
     fn other_way(&mut self, failed: &StepRecord) -> Option<&'static str> {
-        if !self.stabilizes && self.stabilization_length.is_some() && (failed.singular || failed.has_diverged()) {
+        let lets_go = self.singular_cause.is_some() || failed.has_diverged();
+        if !self.stabilizes && self.stabilization_length.is_some() && lets_go {
             self.stabilizes = true;
             return Some("with contact stabilization");
         }

@@ -104,7 +104,7 @@ impl StepRecord {
 
     /// Whether its residual ended larger than it began, so that the iteration has left the neighbourhood of a solution.
     pub fn has_diverged(&self) -> bool {
-        let grown = |check: &ConvergenceCheck| check.ratio.is_nan() || check.ratio > 1.0;
+        let grown = |check: &ConvergenceCheck| check.ratio > 1.0;
         self.failed_to_converge() && self.iterations.last().is_some_and(|last| last.checks.iter().any(grown))
     }
 
