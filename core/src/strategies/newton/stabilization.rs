@@ -24,9 +24,6 @@ use crate::vector3::norm;
 /// Share of the diagonal entries that is added to them in any case: motions without load stay where they are.
 const LEAST: f64 = 1e-8;
 
-/// Share of [`runaway_bound`] that no increment of a restrained body exceeds.
-const RUNAWAY: f64 = 0.01;
-
 /// Iterations in which a body moves on freely before nothing is taken to stop it, and relative change of the residual meanwhile.
 const FREE: usize = 20;
 const STEADY: f64 = 0.01;
@@ -57,7 +54,7 @@ impl NewtonRaphson {
             Err(_) => None,
             Ok(_) if system.interactions.is_empty() => None,
             Ok(solved) => {
-                let bound = RUNAWAY * runaway_bound(part, &system.dofs, self.assembler.equations());
+                let bound = runaway_bound(part, &system.dofs, self.assembler.equations());
                 let increment = self.assembler.equations().expand(&solved.increment);
                 let gone = (0..increment.len()).find(|&n| system.dofs.moves_mesh(n) && increment[n].abs() > bound);
                 let said = gone.map(|n| {
