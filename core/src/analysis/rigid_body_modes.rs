@@ -39,17 +39,23 @@ struct Bodies<'a> {
     motions: Vec<Motion>,
 }
 
-/// Reports before the run, in statics, the restraint of bodies that supports leave free; collective.
-pub(super) fn report_restraints(part: &ModelPart, system: &System, prescribed: &[Prescription], problems: &mut Report) {
-    let Some(column) = Rates::moving(&part.nodes.history) else { return };
+/// Reports before the run, in statics, the restraint of bodies that supports leave free; gives whether there are such bodies and
+/// contact restrains them all. Collective.
+pub(super) fn report_restraints(
+    part: &ModelPart,
+    system: &System,
+    prescribed: &[Prescription],
+    problems: &mut Report,
+) -> bool {
+    let Some(column) = Rates::moving(&part.nodes.history) else { return false };
     let Some(joins): Option<Vec<Vec<Join>>> = system.interactions.iter().map(|own| own.joins(part)).collect() else {
-        return;
+        return false;
     };
     let joins: Vec<Join> = joins.into_iter().flatten().collect();
     let mut bodies = Bodies::of(part);
     bodies.find_motions(system);
     if bodies.motions.is_empty() || bodies.motions.len() > MOST {
-        return;
+        return false;
     }
     let mut rows = Rows { gram: DMatrix::zeros(bodies.motions.len(), bodies.motions.len()) };
     bodies.drop_immobile(&mut rows);
@@ -59,7 +65,7 @@ pub(super) fn report_restraints(part: &ModelPart, system: &System, prescribed: &
     joins.iter().filter(tied).for_each(|join| rows.join(&bodies, join, true));
     let by_supports = rows.free(part);
     if by_supports.is_empty() {
-        return;
+        return false;
     }
     joins.iter().filter(|join| !tied(join)).for_each(|join| rows.join(&bodies, join, false));
     let by_contact = rows.free(part);
@@ -83,6 +89,7 @@ pub(super) fn report_restraints(part: &ModelPart, system: &System, prescribed: &
             Diagnostic::note("held-by-contact", format!("{modes} restrained by contact only"))
         });
     }
+    by_friction.is_empty()
 }
 
 impl<'a> Bodies<'a> {

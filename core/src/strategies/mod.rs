@@ -68,6 +68,7 @@ pub(crate) use linear_solvers::{
 };
 pub(crate) use location::{body_in_words, location};
 pub use measure::{Form, Measure, Tolerance};
+pub(crate) use newton::ONLY_CONTACT_RESTRAINS;
 pub use newton::{ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};
 pub use phases::Phases;
 pub use pseudo_static_scheme::PseudoStaticScheme;

@@ -18,6 +18,7 @@ use zelus_linear_algebra::{LinearSolver, SolveReport};
 use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
 pub(super) use references::References;
+pub(crate) use stabilization::ONLY_CONTACT_RESTRAINS;
 
 use super::balance::Balance;
 use super::body_balance::{BodyBalance, BodyDofs, Imbalance};

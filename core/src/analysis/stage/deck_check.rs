@@ -15,11 +15,12 @@ use super::problems_of_ranks::problems_of_all;
 use crate::diagnostics::{Diagnostic, Result};
 use crate::model::Model;
 
-/// Notes and warnings of the stage as built, of all ranks; collective.
+/// Notes and warnings of the stage as built, of all ranks; and, where the restraint of bodies is looked at, whether contact alone
+/// restrains some and none is free. Collective.
 ///
 /// # Errors
 /// Contradictions of processes, loads and supports, and other problems that they find, gathered.
-pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>> {
+pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<(Vec<Diagnostic>, Option<bool>)> {
     let BuiltStage { root, schedule, solver, system, processes, surfaces, tables, .. } = built;
     let mut problems = built.warnings.clone();
     for process in processes {
@@ -57,12 +58,14 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<Vec<Diagnostic>
     if !is_static && part.info.step == 0 {
         warn_of_no_inertia(part, &mut problems);
     }
+    let mut contact_restrains = None;
     if is_static && part.info.step == 0 {
-        report_restraints(part, system, &prescriptions(part, processes, middle), &mut problems);
+        contact_restrains =
+            Some(report_restraints(part, system, &prescriptions(part, processes, middle), &mut problems));
         // Later stages may release what earlier ones have loaded.
         if schedule.start_time <= 0.0 {
             warn_of_no_load(part, system, processes, &mut problems);
         }
     }
-    problems_of_all(&model.ranks, problems)?.finish()
+    Ok((problems_of_all(&model.ranks, problems)?.finish()?, contact_restrains))
 }

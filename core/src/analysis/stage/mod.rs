@@ -29,7 +29,7 @@ use crate::diagnostics::{Diagnostic, Report, Result, unfit};
 use crate::io::{Claim, FileUse};
 use crate::model::Model;
 use crate::processes::{Process, largest_results};
-use crate::strategies::{Plan, SolutionStrategy};
+use crate::strategies::{ONLY_CONTACT_RESTRAINS, Plan, SolutionStrategy};
 
 use self::built_stage::BuiltStage;
 use self::deck_check::check;
@@ -78,7 +78,11 @@ impl Stage {
         let start = Instant::now();
         let shared = SharedStage::share(read, &folders.deck, run)?;
         let built = BuiltStage::build(shared, folders, more, outputs, run)?;
-        tell(check(&built, run.model)?, run.report, run.monitor);
+        let (told, contact_restrains) = check(&built, run.model)?;
+        tell(told, run.report, run.monitor);
+        if let Some(contact_restrains) = contact_restrains {
+            run.model.root_mut(&built.root)?.info.set(ONLY_CONTACT_RESTRAINS, contact_restrains);
+        }
         run.driver.at(LoopPoint::Ready, &built.root, run.model, &built.system, &mut |_| Ok(()))?;
         run.report.add_seconds("set up", start.elapsed().as_secs_f64());
         Ok(Self::new(built))

@@ -15,11 +15,14 @@
 use super::NewtonRaphson;
 use crate::assembly::{System, runaway_bound};
 use crate::diagnostics::Result;
-use crate::model::{ModelPart, NumberedBodies};
+use crate::model::{ModelPart, NumberedBodies, StepMark};
 use crate::strategies::dof_name::DofName;
 use crate::strategies::linear_solve::{Failed, Solved};
 use crate::strategies::records::IterationRecord;
 use crate::vector3::norm;
+
+/// Mark of the step data: bodies are there that supports leave free, and contact restrains them all.
+pub(crate) const ONLY_CONTACT_RESTRAINS: StepMark = StepMark::new("ONLY_CONTACT_RESTRAINS");
 
 /// Share of the diagonal entries that is added to them in any case: motions without load stay where they are.
 const LEAST: f64 = 1e-8;
@@ -72,7 +75,11 @@ impl NewtonRaphson {
     /// The least length of contact stabilisation that an interaction states; `None` where inertia restrains bodies, or contact does
     /// not. Collective.
     pub(super) fn find_stabilization_length(&self, part: &ModelPart, system: &mut System) -> Option<f64> {
-        if !self.settings.contact_stabilization || !self.scheme.is_static() || self.settings.linear {
+        if !part.info.has(ONLY_CONTACT_RESTRAINS)
+            || !self.settings.contact_stabilization
+            || !self.scheme.is_static()
+            || self.settings.linear
+        {
             return None;
         }
         let sets = system.interactions.iter_mut().filter_map(|interaction| interaction.active_set());
