@@ -294,6 +294,7 @@ impl NewtonRaphson {
             solved = self.solve_again(iteration, step, part, system, monitor);
         }
         if step.stabilization.is_none()
+            && self.stabilization_length.is_some()
             && let Some(cause) = self.unrestrained(&solved, part, system)
         {
             // Later iterates have followed a tangent that let a body go: such a step begins anew.
@@ -312,7 +313,7 @@ impl NewtonRaphson {
                 // Not for want of restraint: the system as it is.
                 step.stabilization = None;
                 solved = self.solve_again(iteration, step, part, system, monitor);
-            } else if solved.is_ok() && self.stabilization_length.is_some() {
+            } else if solved.is_ok() {
                 return Err(Failed::Singular(cause, Vec::new()));
             }
         }

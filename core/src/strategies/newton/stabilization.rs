@@ -55,7 +55,6 @@ impl NewtonRaphson {
         match solved {
             Err(Failed::Singular(why, free)) => part.ranks.any(!free.is_empty()).then(|| why.clone()),
             Err(_) => None,
-            Ok(_) if system.interactions.is_empty() => None,
             Ok(solved) => {
                 let bound = runaway_bound(part, &system.dofs, self.assembler.equations());
                 let increment = self.assembler.equations().expand(&solved.increment);
