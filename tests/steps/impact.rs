@@ -211,8 +211,21 @@ fn long_steps_keep_the_energy_where_gaps_close() {
 /// A block whose whole skin is the slave lands flat, on an edge or on a corner: without friction nothing pushes it aside.
 #[test]
 fn a_thrown_block_keeps_its_energy_and_its_way() {
+    let blocks = [(2, 4, 0.0), (2, 4, 0.3), (3, 2, 0.0), (3, 3, 0.0), (3, 3, 0.3)];
+    throw_blocks(&blocks, "alm_contact_process", &json!({}));
+}
+
+/// So it does where linear constraints are its contact.
+#[test]
+fn a_block_thrown_on_constraints_keeps_its_energy_and_its_way() {
+    let blocks = [(2, 4, 0.0), (2, 4, 0.3), (3, 2, 0.0), (3, 3, 0.0)];
+    throw_blocks(&blocks, "mpc_contact_process", &json!({"mpc_contact_settings": {"contact_type": "Frictionless"}}));
+}
+
+/// Throws blocks (dimension, elements, angle) on a ground, with contact by `process` and these settings of the solver.
+fn throw_blocks(blocks: &[(usize, usize, f64)], process: &str, settings: &Value) {
     let material = [1.0, 0.3, 1.0];
-    for (dimension, count, angle) in [(2, 4, 0.0), (2, 4, 0.3), (3, 2, 0.0), (3, 3, 0.0), (3, 3, 0.3)] {
+    for &(dimension, count, angle) in blocks {
         let mut boxes = Boxes::new(dimension);
         let faces = ["x-", "x+", "y-", "y+", "z-", "z+"].map(|face| (face, "Skin"));
         let velocity = |_| [0.01, -0.02, 0.0];
@@ -221,9 +234,8 @@ fn a_thrown_block_keeps_its_energy_and_its_way() {
         let ground = [[-1.0, lowest - 1.0, -1.0], [2.0, lowest, 2.0]];
         boxes.add("Ground", ground, [3, 1, 3], 0.0, &[("y+", "Top")], |_| [0.0; 3]);
         let results = solve(&boxes, |folder| {
-            let process = ("alm_contact_process", &json!({}));
             let fixed = [("Ground", [true; 3])];
-            boxes.write(folder, material, &[("Skin", "Top")], &fixed, [0.05, 5.0], &json!({}), process);
+            boxes.write(folder, material, &[("Skin", "Top")], &fixed, [0.05, 5.0], settings, (process, &json!({})));
         });
         let state = |step| boxes.state("Block", material, &results, step);
         let begin = state(None);
@@ -236,7 +248,7 @@ fn a_thrown_block_keeps_its_energy_and_its_way() {
         }
         let end = state(Some(results.len() - 1));
         println!(
-            "{dimension}D, {count} elements, turned by {angle}: energy from {least:.4} to {most:.4}, aside {aside:.1e}, \
+            "{process}, {dimension}D, {count} elements, turned by {angle}: energy from {least:.4} to {most:.4}, aside {aside:.1e}, \
              momentum {:?} to {:?}",
             begin.momentum, end.momentum
         );

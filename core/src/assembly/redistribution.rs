@@ -83,7 +83,7 @@ impl Redistribution {
         self.unknowns.clear();
     }
 
-    /// Takes the mass off the unknowns of the massless nodes that are `free`; whether anything changes.
+    /// Takes the mass off the unknowns of the massless nodes that are not prescribed (`free`); whether anything changes.
     pub(super) fn choose_unknowns(&mut self, dofs: &DofTable, free: impl Fn(usize) -> bool) -> bool {
         let mut unknowns = Vec::new();
         let of_node: FxHashMap<u32, &Vec<(u32, f64)>> = self.nodes.iter().map(|(node, list)| (*node, list)).collect();

@@ -100,7 +100,7 @@ pub struct Energies {
     pub loads: f64,
     /// Work of supports that move.
     pub supports: f64,
-    /// Work of interactions on both sides.
+    /// Work of interactions and linear constraints on all their nodes.
     pub interactions: f64,
     /// Heat of friction.
     pub dissipated: f64,

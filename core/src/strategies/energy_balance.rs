@@ -204,7 +204,8 @@ impl<'a> Pairs<'a> {
     }
 }
 
-/// The forces of each kind over all unknowns; those of elements are the remainder of the residual. Collective.
+/// The forces of each kind over all unknowns, those of linear constraints with those of interactions; those of elements are the
+/// remainder of the residual. Collective.
 fn forces(
     part: &ModelPart,
     system: &System,
@@ -216,7 +217,7 @@ fn forces(
 ) -> Result<Forces> {
     let mut loads = assembler.external_forces(part, system)?;
     loads.iter_mut().zip(more.into_iter().flatten()).for_each(|(load, more)| *load += more);
-    let interactions = assembler.exchanged(part, system, |push| pairs.push(system, push))?;
+    let mut interactions = assembler.exchanged(part, system, |push| pairs.push(system, push))?;
     let taken_up = inertia.map(|inertia| assembler.inertia_forces(part, system, inertia)).transpose()?;
     let mut inertia = assembler.storage(part, system)?;
     inertia.iter_mut().zip(taken_up.into_iter().flatten()).for_each(|(own, taken)| *own -= taken);
@@ -225,7 +226,12 @@ fn forces(
     let equations = assembler.equations();
     let supported = equations.supported(residual);
     let held = |(n, force): (usize, &f64)| if equations.is_fixed(n) { -force } else { 0.0 };
-    let reactions = supported.iter().enumerate().map(held).collect();
+    let reactions: Vec<f64> = supported.iter().enumerate().map(held).collect();
+    if equations.has_slaves() {
+        // The residual that supports leave is the force of constraints.
+        let left = residual.iter().zip(&reactions).map(|(r, reaction)| r + reaction);
+        interactions.iter_mut().zip(left).for_each(|(own, left)| *own -= left);
+    }
     Ok([loads, elements, interactions, inertia, reactions])
 }
 

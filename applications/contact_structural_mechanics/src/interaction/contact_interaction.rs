@@ -510,7 +510,9 @@ impl Massless for ContactInteraction {
                 Arc::new(StepParameters { dynamic: true, ..(*self.contact.setup.parameters).clone() });
         }
         if self.takes_mass() {
-            self.near_nodes = near_nodes(part, &self.contact.pairing, &self.contact.states, &self.near_nodes);
+            let (pairing, states) = (&self.contact.pairing, &self.contact.states);
+            self.near_nodes =
+                near_nodes(part, &pairing.nodes(), states, |slaves| pairing.masters_of(slaves), &self.near_nodes);
         }
     }
 

@@ -1,9 +1,12 @@
 //! The loops around Newton's iteration: the checks of a converged state, and their changes before the next iteration.
 
 use serde::{Deserialize, Serialize};
+use zelus_core::assembly::nodal_vectors;
 use zelus_core::entities::OuterLoop;
 use zelus_core::model::ModelPart;
+use zelus_core::vector3::norm;
 use zelus_core::{Result, StateMapper};
+use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use super::contact_state::ContactState;
 use crate::active_set::{ActiveSetUpdate, Rules};
@@ -142,13 +145,19 @@ impl OuterLoops {
         }
         self.friction_ramp.solve();
         if contact.setup.parameters.dynamic {
-            self.work.of_step(part, &contact.pairing.as_entities())?;
+            self.work.of_step(part, |out| nodal_vectors(part, &contact.pairing.as_entities(), &DISPLACEMENT, out))?;
             if let Some(why) = self.work.too_much(part, &solver) {
                 return Ok(OuterLoop::Failed(why));
             }
         }
+        let pressure = |slave, level| match formulation.multiplier {
+            Multiplier::None | Multiplier::Body => 0.0,
+            multiplier => {
+                scale_factor * norm(multiplier.value_at(&part.slave_nodes, contact.states.owner(slave), level))
+            }
+        };
         let start = (&*self.start_gaps, &mut self.impact_error);
-        Ok(coarse_impact(part, &contact.states, formulation, scale_factor, solver.impact_tolerance, start))
+        Ok(coarse_impact(part, &contact.states, pressure, solver.impact_tolerance, start))
     }
 
     /// The step is accepted.

@@ -1,7 +1,9 @@
 //! Contact and ties by linear constraints.
 
 mod mpc_contact_settings;
+mod mpc_edges;
 mod mpc_friction;
+mod mpc_impact;
 mod mpc_interaction;
 mod mpc_kind;
 mod mpc_results;

@@ -5,6 +5,7 @@ use zelus_core::model::ProcessInfo;
 use zelus_core::register;
 
 use super::mpc_kind::{MpcKind, mpc_contact_type};
+use crate::solver::{IMPACT_NUMBERS, marks_of_words};
 
 /// Mark of the step data: relations are made anew in every iteration.
 const UPDATE_EACH_ITERATION: &str = "UPDATE_EACH_NL_ITERATION";
@@ -28,10 +29,10 @@ register! { SolverExtensionEntry "mpc_contact_settings",
         },
         marks: |settings| {
             let update = settings.get_bool("update_each_nl_iteration")?;
-            Ok(update.then_some(UPDATE_EACH_ITERATION).into_iter().collect())
+            Ok(update.then_some(UPDATE_EACH_ITERATION).into_iter().chain(marks_of_words(settings)?).collect())
         },
         cutting: |_| Ok(None),
-        values: |_| Ok(Vec::new()),
+        values: |settings| IMPACT_NUMBERS.into_iter().map(|(key, name)| Ok((name, settings.get_f64(key)?))).collect(),
         ..ExtensionDefinition::NOTHING
     },
 }

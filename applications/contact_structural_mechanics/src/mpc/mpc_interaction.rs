@@ -11,7 +11,8 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{
-    ActiveSet, Coupling, EntityBlock, Interaction, Join, PairState, Retry, SetChange, require_kind,
+    ActiveSet, Coupling, EntityBlock, Interaction, Join, Massless, MasslessNodes, OuterLoop, PairState, Retry,
+    SetChange, require_kind,
 };
 use zelus_core::model::{EntityRole, MasterSlaveConstraint, ModelPart, Nodes};
 use zelus_core::vector3::{dot, norm, scale};
@@ -19,6 +20,7 @@ use zelus_core::{Result, State, StateMapper};
 use zelus_structural_mechanics::variables::{NORMAL, REACTION};
 
 use super::mpc_friction::{MpcFriction, reaction};
+use super::mpc_impact::MpcImpact;
 use super::mpc_kind::MpcKind;
 use super::mpc_results::write_results;
 use super::mpc_settings::{MpcSettings, require_slaves_of_first_order};
@@ -56,6 +58,7 @@ pub struct MpcInteraction {
     saved: SlaveStates,
     relations: Relations,
     friction: MpcFriction,
+    impact: MpcImpact,
     young: f64,
     first_id: usize,
     version: u64,
@@ -81,6 +84,7 @@ struct SavedMpc {
     sided: bool,
     warned_of_held: bool,
     in_contact: InterfacesInContact,
+    impact: MpcImpact,
 }
 
 #[typetag::serde(name = "mpc_contact")]
@@ -88,6 +92,7 @@ impl State for SavedMpc {
     fn remap(&mut self, mapper: &mut dyn StateMapper) {
         self.relations.remap(mapper);
         mapper.node_map(&mut self.directions);
+        self.impact.remap(mapper);
     }
 }
 
@@ -118,6 +123,7 @@ impl MpcInteraction {
             saved: SlaveStates::default(),
             relations: Relations::default(),
             friction: MpcFriction::default(),
+            impact: MpcImpact::default(),
             young: 0.0,
             first_id: 0,
             version: 0,
@@ -355,10 +361,11 @@ impl Interaction for MpcInteraction {
         nodal_normals(part, &self.interfaces);
         self.states.read_normals(&part.nodes);
         self.take_sides(part);
+        self.relations.find_edges(part, &self.interfaces, &self.settings);
         self.free_bodies = FreeBodies::default();
         self.steps_since_search = self.steps_since_search.saturating_add(1);
         if self.settings.ties() && self.settings.consistent() && !self.relations.pairs.is_empty() {
-            self.relations.relate(part, &self.interfaces, &self.settings, &[]);
+            self.relations.relate(part, &self.interfaces, &self.settings, &[], &self.states);
         } else if self.steps_since_search >= self.settings.database_step_update {
             let warning = self.relations.search(part, &self.interfaces, &self.settings, &self.states);
             self.messages.extend(warning);
@@ -383,11 +390,13 @@ impl Interaction for MpcInteraction {
         }
         self.write_constraints(part);
         self.states.export(&mut part.nodes);
+        self.impact.keep_start(&self.states);
         Ok(())
     }
 
     fn finalize_step(&mut self, part: &mut ModelPart) -> Result<()> {
         self.warn_of_held(part);
+        self.messages.extend(self.impact.accept(part, self.settings.kind == MpcKind::Frictionless));
         if self.acting {
             self.in_contact.accept(&self.slaves_by_interface(), &self.states);
         }
@@ -407,6 +416,7 @@ impl Interaction for MpcInteraction {
             sided: self.sided,
             warned_of_held: self.warned_of_held,
             in_contact: self.in_contact.clone(),
+            impact: self.impact.clone(),
         }))
     }
 
@@ -416,7 +426,8 @@ impl Interaction for MpcInteraction {
         self.states.resume(saved.states)?;
         saved.relations.check(&self.interfaces, part.nodes.len(), &self.states)?;
         check_nodes(part.nodes.len(), saved.directions.keys().copied())?;
-        self.relations = saved.relations;
+        saved.impact.check(part.nodes.len())?;
+        (self.relations, self.impact) = (saved.relations, saved.impact);
         (self.friction.directions, [self.version, self.friction.graph]) = (saved.directions, saved.versions);
         (self.steps_since_search, self.sided) = (saved.steps_since_search, saved.sided);
         (self.warned_of_held, self.in_contact) = (saved.warned_of_held, saved.in_contact);
@@ -481,8 +492,27 @@ impl Interaction for MpcInteraction {
         Some(self)
     }
 
+    fn massless(&mut self) -> Option<&mut dyn Massless> {
+        let takes_mass = !self.settings.ties() && self.acting;
+        takes_mass.then_some(self as &mut dyn Massless)
+    }
+
     fn retry(&mut self) -> Option<&mut dyn Retry> {
         Some(self)
+    }
+}
+
+impl Massless for MpcInteraction {
+    fn begin_dynamic_step(&mut self, part: &ModelPart) {
+        self.impact.begin_dynamic_step(part, &self.interfaces, &self.states, &self.relations);
+    }
+
+    fn massless_nodes(&self) -> MasslessNodes {
+        if self.settings.solver.keeps_mass {
+            MasslessNodes::default()
+        } else {
+            self.impact.massless_nodes(&self.interfaces)
+        }
     }
 }
 
@@ -516,7 +546,7 @@ impl ActiveSet for MpcInteraction {
             self.follow(part, iteration);
         } else if self.settings.update_each_iteration && !(self.settings.ties() && self.settings.consistent()) {
             nodal_normals(part, &self.interfaces);
-            self.relations.renew(part, &self.interfaces, &self.settings);
+            self.relations.renew(part, &self.interfaces, &self.settings, &self.states);
         }
         self.integrate(part);
         if !self.settings.ties() {
@@ -531,6 +561,13 @@ impl ActiveSet for MpcInteraction {
         }
         self.states.export(&mut part.nodes);
         Ok(change)
+    }
+
+    fn after_convergence(&mut self, part: &mut ModelPart) -> Result<OuterLoop> {
+        if !self.acting || self.settings.ties() {
+            return Ok(OuterLoop::Done);
+        }
+        self.impact.judge(part, &mut self.states, &self.relations, &self.friction, &self.settings.solver)
     }
 
     fn restrain_free_bodies(&mut self, part: &mut ModelPart) -> bool {

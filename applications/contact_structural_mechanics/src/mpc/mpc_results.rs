@@ -16,17 +16,18 @@ use crate::results::write_states;
 use crate::slave_nodes::SlaveStates;
 use crate::variables::CONTACT_FORCE;
 
-/// Writes CONTACT_STATUS, CONTACT_PRESSURE, CONTACT_TRACTION, CONTACT_GAP, CONTACT_SLIP and CONTACT_FORCE; `sticks` says that nodes may
-/// stick, by friction or by a tie.
-pub(super) fn write_results(
-    part: &mut ModelPart,
+/// Finds pressures and tractions of the slave nodes, and the forces of contact on the nodes of the part (3 a node).
+pub(super) fn find_forces(
+    part: &ModelPart,
     states: &mut SlaveStates,
     relations: &BTreeMap<u32, NodeRelation>,
     friction: &MpcFriction,
-    sticks: bool,
-) {
+    mut out: Vec<f64>,
+) -> Vec<f64> {
     let sliding: BTreeMap<u32, [f64; 3]> = friction.sliders.iter().flat_map(|block| block.forces()).collect();
-    let mut forces = vec![[0.0; 3]; part.nodes.len()];
+    out.clear();
+    out.resize(3 * part.nodes.len(), 0.0);
+    let (forces, _) = out.as_chunks_mut::<3>();
     states.for_each(|_, state| (state.law.pressure, state.law.traction) = (0.0, [0.0; 3]));
     for (&node, relation) in relations {
         let slave = states.only_at(node);
@@ -48,6 +49,19 @@ pub(super) fn write_results(
             state.law.traction = sub(traction, scale(relation.normal, state.law.pressure));
         }
     }
+    out
+}
+
+/// Writes CONTACT_STATUS, CONTACT_PRESSURE, CONTACT_TRACTION, CONTACT_GAP, CONTACT_SLIP and CONTACT_FORCE; `sticks` says that nodes may
+/// stick, by friction or by a tie.
+pub(super) fn write_results(
+    part: &mut ModelPart,
+    states: &mut SlaveStates,
+    relations: &BTreeMap<u32, NodeRelation>,
+    friction: &MpcFriction,
+    sticks: bool,
+) {
+    let forces = find_forces(part, states, relations, friction, Vec::new());
     write_states(&mut part.nodes, states, sticks);
-    part.nodes.values.values_mut(&CONTACT_FORCE, 0).copy_from_slice(forces.as_flattened());
+    part.nodes.values.values_mut(&CONTACT_FORCE, 0).copy_from_slice(&forces);
 }

@@ -16,10 +16,11 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 use zelus_core::StateMapper;
 use zelus_core::model::{MasterSlaveConstraint, ModelPart};
-use zelus_core::vector3::{dot, normalised, sub};
+use zelus_core::vector3::{add, dot, norm, normalised, scale, sub};
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
 use crate::interface::{Interface, Roles};
+use crate::pairing::{FLAT, NO_COMMON_NORMAL, SHARP};
 use crate::pairs::{FacetOperators, FacetPair};
 
 /// Entries of B below this are negative.
@@ -42,8 +43,13 @@ struct Row {
     area: f64,
     weights: Vec<(u32, f64)>,
     lead: [f64; 3],
-    gap: f64,
+    /// Way from the master to the node.
+    apart: [f64; 3],
     normal: [f64; 3],
+    /// Normal of the master, turned round.
+    opposite: [f64; 3],
+    /// Whether the slave facet deviates much from the mean normal.
+    sharp: bool,
 }
 
 /// A slave node with the sum of its rows.
@@ -57,7 +63,7 @@ pub(crate) struct NodeRelation {
     closing: [f64; 3],
     /// The part of that which closes an opening.
     opening: [f64; 3],
-    /// Unit normal of the slave.
+    /// Unit normal of the slave, that of the master turned round at edges.
     pub normal: [f64; 3],
 }
 
@@ -115,6 +121,7 @@ impl PairRelation {
         let (slave, master) = (&facets[pair.key.slave as usize], &facets[pair.key.master as usize]);
         let displacement = part.nodes.history.values(&DISPLACEMENT, 0);
         let normals = part.nodes.history.values(&NORMAL, 0);
+        let (own, opposite) = (slave.normal(part), scale(master.normal(part), -1.0));
         let mut rows = Vec::new();
         let diagonal = pair.operators.is_diagonal();
         let operators = match weights {
@@ -137,10 +144,10 @@ impl PairRelation {
                 (0..3).for_each(|c| apart[c] -= weight * x[c]);
                 (0..3).for_each(|c| lead[c] -= weight * u[c]);
             }
-            let gap = -dot(normal, apart);
+            let sharp = dot(own, normal) < SHARP;
             let area = operators.d[j][..slave.nodes.len()].iter().sum();
             let kept = master.nodes.iter().copied().zip(row.iter().copied()).filter(|(_, w)| w.abs() > NEGLIGIBLE);
-            rows.push(Row { node, area, weights: kept.collect(), lead, gap, normal });
+            rows.push(Row { node, area, weights: kept.collect(), lead, apart, normal, opposite, sharp });
         }
         Self { rows }
     }
@@ -157,11 +164,13 @@ pub(crate) fn can_follow(part: &ModelPart, node: u32, normal: [f64; 3]) -> bool 
     (0..part.info.domain_size).filter(free).any(|c| normal[c].abs() > HOLD)
 }
 
-/// The relation of each slave node: its rows, weighed as `weights` says.
+/// The relation of each slave node: its rows, weighed as `weights` says; `edges` are nodes that may press as an edge, ascending, where
+/// edges follow the normal of the master.
 pub(crate) fn node_relations<'p>(
     pairs: impl Iterator<Item = (u32, &'p PairRelation)>,
     interfaces: &[Interface],
     weights: Weights,
+    edges: Option<&[u32]>,
 ) -> BTreeMap<u32, NodeRelation> {
     let mut rows: BTreeMap<u32, (u32, Vec<&Row>)> = BTreeMap::new();
     for (interface, pair) in pairs {
@@ -172,12 +181,19 @@ pub(crate) fn node_relations<'p>(
             }
         }
     }
+    let along = |node: u32, rows: &[&Row]| {
+        let edges = edges?;
+        let is_edge = edges.binary_search(&node).is_ok() || rows.iter().any(|row| row.sharp);
+        is_edge.then(|| normal_of_masters(rows)).flatten()
+    };
     let by_area = |rows: &[&Row]| -> Vec<f64> {
         let whole: f64 = rows.iter().map(|row| row.area).sum();
         rows.iter().map(|row| row.area / whole).collect()
     };
     if weights == Weights::Consistent {
-        return rows.into_iter().map(|(node, (_, list))| (node, sum(&list, &by_area(&list)))).collect();
+        let of_node =
+            |(node, (_, list)): (u32, (u32, Vec<&Row>))| (node, sum(&list, &by_area(&list), along(node, &list)));
+        return rows.into_iter().map(of_node).collect();
     }
     let mut facets: BTreeMap<(u32, u32), usize> = BTreeMap::new();
     for (at, interface) in interfaces.iter().enumerate() {
@@ -186,19 +202,37 @@ pub(crate) fn node_relations<'p>(
         }
     }
     let share = |node, at, rows: &[&Row]| 1.0 / facets.get(&(at, node)).copied().unwrap_or(rows.len()) as f64;
-    rows.into_iter().map(|(node, (at, list))| (node, sum(&list, &vec![share(node, at, &list); list.len()]))).collect()
+    let of_node = |(node, (at, list)): (u32, (u32, Vec<&Row>))| {
+        (node, sum(&list, &vec![share(node, at, &list); list.len()], along(node, &list)))
+    };
+    rows.into_iter().map(of_node).collect()
 }
 
-fn sum(rows: &[&Row], shares: &[f64]) -> NodeRelation {
+/// The mean of the masters' normals by area, turned round, where it is one and not that of the slave.
+fn normal_of_masters(rows: &[&Row]) -> Option<[f64; 3]> {
+    let (mut opposite, mut normal, mut area) = ([0.0; 3], [0.0; 3], 0.0);
+    for row in rows {
+        opposite = add(opposite, scale(row.opposite, row.area));
+        normal = add(normal, scale(row.normal, row.area));
+        area += row.area;
+    }
+    let (opposite_size, opposite) = (norm(opposite), normalised(opposite));
+    (opposite_size > NO_COMMON_NORMAL * area && dot(opposite, normalised(normal)) < FLAT.cos()).then_some(opposite)
+}
+
+/// The sum of rows with these shares, with gaps `along` a normal or those of the rows.
+fn sum(rows: &[&Row], shares: &[f64], along: Option<[f64; 3]>) -> NodeRelation {
     let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
     let [mut lead, mut closing, mut opening, mut normal] = [[0.0; 3]; 4];
     for (row, share) in rows.iter().zip(shares) {
+        let n = along.unwrap_or(row.normal);
+        let gap = -dot(n, row.apart);
         row.weights.iter().for_each(|&(node, w)| *weights.entry(node).or_insert(0.0) += share * w);
         for c in 0..3 {
             lead[c] += share * row.lead[c];
-            closing[c] += share * row.gap * row.normal[c];
-            opening[c] += share * row.gap.max(0.0) * row.normal[c];
-            normal[c] += share * row.normal[c];
+            closing[c] += share * gap * n[c];
+            opening[c] += share * gap.max(0.0) * n[c];
+            normal[c] += share * n[c];
         }
     }
     let weights = weights.into_iter().filter(|(_, w)| w.abs() > NEGLIGIBLE).collect();
@@ -363,19 +397,24 @@ mod tests {
 
     #[test]
     fn rows_count_with_their_area_or_by_facets() {
-        let row = |area, node, gap| Row {
+        let row = |area, node, gap: f64| Row {
             node: 0,
             area,
             weights: vec![(node, 1.0)],
             lead: [0.0; 3],
-            gap,
+            apart: [0.0, 0.0, -gap],
             normal: [0.0, 0.0, 1.0],
+            opposite: [0.0, 0.6, 0.8],
+            sharp: false,
         };
         let pair = PairRelation { rows: vec![row(3.0, 1, 0.2), row(1.0, 2, -0.2)] };
-        let nodes = node_relations([(0, &pair), (1, &pair)].into_iter(), &[], Weights::Consistent);
+        let nodes = node_relations([(0, &pair), (1, &pair)].into_iter(), &[], Weights::Consistent, None);
         assert_eq!(nodes[&0].weights, [(1, 0.75), (2, 0.25)]);
         assert!((nodes[&0].closing[2] - 0.1).abs() < 1e-16 && nodes[&0].keeping_opening().closing[2] < 0.0);
-        let first = node_relations([(0, &pair), (1, &pair)].into_iter(), &[], Weights::ByFacets);
+        let first = node_relations([(0, &pair), (1, &pair)].into_iter(), &[], Weights::ByFacets, None);
         assert_eq!(first[&0].weights, [(1, 0.5), (2, 0.5)]);
+        let edge = node_relations([(0, &pair)].into_iter(), &[], Weights::Consistent, Some(&[0]));
+        assert_eq!(edge[&0].normal, [0.0, 0.6, 0.8]);
+        assert!((edge[&0].closing[2] - 0.1 * 0.8 * 0.8).abs() < 1e-16, "{:?}", edge[&0].closing);
     }
 }

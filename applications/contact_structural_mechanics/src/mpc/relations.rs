@@ -10,6 +10,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::vector3::{dot, norm, sub};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
+use super::mpc_edges::MpcEdges;
 use super::mpc_settings::MpcSettings;
 use super::node_relation::{NodeRelation, PairRelation, node_relations};
 use crate::interface::{Facet, Interface, check_nodes};
@@ -30,6 +31,9 @@ pub(crate) struct Relations {
     pub nodes: BTreeMap<u32, NodeRelation>,
     /// Where the nodes of the interfaces were when relations were made.
     places: Vec<[f64; 3]>,
+    /// Edges of the slave surfaces.
+    #[serde(skip)]
+    edges: MpcEdges,
     #[serde(skip)]
     saved: BTreeMap<PairKey, PairRelation>,
     warned: bool,
@@ -50,6 +54,13 @@ fn of_nodes<'a>(
 }
 
 impl Relations {
+    /// Finds the edges of slave surfaces, where contact looks at them.
+    pub(crate) fn find_edges(&mut self, part: &ModelPart, interfaces: &[Interface], settings: &MpcSettings) {
+        if !settings.ties() {
+            self.edges = MpcEdges::new(part, interfaces, settings.solver.feature_angle);
+        }
+    }
+
     /// Whether they can be those of as many nodes, among them these slaves.
     ///
     /// # Errors
@@ -93,19 +104,25 @@ impl Relations {
         let known = |key: &PairKey| self.pairs.contains_key(key);
         let found =
             overlapping_pairs(part, interfaces, &settings.search, segmentation, &of_nodes(part, interfaces), &known);
-        self.relate(part, interfaces, settings, &found);
+        self.relate(part, interfaces, settings, &found, states);
         self.warn_of_unlike_meshes(part, settings)
     }
 
     /// Renews the relations of the pairs there are.
-    pub(crate) fn renew(&mut self, part: &ModelPart, interfaces: &[Interface], settings: &MpcSettings) {
+    pub(crate) fn renew(
+        &mut self,
+        part: &ModelPart,
+        interfaces: &[Interface],
+        settings: &MpcSettings,
+        states: &SlaveStates,
+    ) {
         let pair = |key: &PairKey| {
             let (slave, master) = facets(interfaces, *key);
             let operators = facet_operators(part, slave, master, &nodal_normals(part, slave), &settings.segmentation)?;
             Some(FacetPair { key: *key, operators })
         };
         let pairs: Vec<FacetPair> = self.pairs.keys().filter_map(pair).collect();
-        self.relate(part, interfaces, settings, &pairs);
+        self.relate(part, interfaces, settings, &pairs, states);
     }
 
     /// How far nodes of the interfaces are from where they were when relations were made, in mesh sizes.
@@ -126,6 +143,7 @@ impl Relations {
         interfaces: &[Interface],
         settings: &MpcSettings,
         pairs: &[FacetPair],
+        states: &SlaveStates,
     ) {
         for pair in pairs {
             let (slave, master) = facets(interfaces, pair.key);
@@ -140,7 +158,9 @@ impl Relations {
         let nodes = interfaces.iter().flat_map(|interface| &interface.nodes);
         self.places = nodes.map(|&node| part.nodes.current[node as usize]).collect();
         let pairs = self.pairs.iter().map(|(key, relation)| (key.interface, relation));
-        self.nodes = node_relations(pairs, interfaces, settings.weights);
+        let follows_masters = !settings.ties() && settings.solver.feature_angle.is_some();
+        let edges = follows_masters.then(|| self.edges.open(interfaces, states));
+        self.nodes = node_relations(pairs, interfaces, settings.weights, edges.as_deref());
     }
 
     /// With weights that do not add up to one nodes that follow several masters pass forces on wrongly, unless the master is
@@ -170,6 +190,10 @@ impl Relations {
     ) {
         states.for_all(|state| (state.kinematics.weighted_gap, state.kinematics.area) = (0.0, 0.0));
         states.read_normals(&part.nodes);
+        for (&node, relation) in &self.nodes {
+            let own = states.only_at(node);
+            states[own].kinematics.normal = relation.normal;
+        }
         for key in self.pairs.keys() {
             let (slave, master) = facets(interfaces, *key);
             let normals = nodal_normals(part, slave);

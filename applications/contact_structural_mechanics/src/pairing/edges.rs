@@ -14,14 +14,14 @@ use crate::interface::SlaveIndex;
 use crate::slave_nodes::{SlaveStates, SlaveSums, Summands};
 
 /// Cosine of the angle between a facet and the mean normal of its node, beyond which the node is on a sharp fold: 35°.
-const SHARP: f64 = 0.82;
+pub(crate) const SHARP: f64 = 0.82;
 /// Angle between the facets of a rim and the master, in radians, up to which both lie flat on each other: strains and coarse facets
 /// tilt faces that press by less.
-const FLAT: f64 = 0.05;
+pub(crate) const FLAT: f64 = 0.05;
 /// Cosine of the angle between two normals up to which they are one direction.
 const SAME: f64 = 0.9;
 /// Length of the mean of unit normals of masters below which they have no normal in common.
-const NO_COMMON_NORMAL: f64 = 0.1;
+pub(crate) const NO_COMMON_NORMAL: f64 = 0.1;
 
 /// Gives slave nodes on rims and sharp folds the normal of the master that they overlap. Collective.
 ///

@@ -120,6 +120,13 @@ impl Pairing {
         self.ascending(|interface| interface.nodes.clone())
     }
 
+    /// Nodes of the master facets that overlap a slave facet with one of these mesh nodes.
+    pub(crate) fn masters_of(&self, slaves: &BTreeSet<u32>) -> BTreeSet<u32> {
+        let pairs = self.blocks.iter().flat_map(|block| block.pairs()).filter(|pair| pair.overlapping);
+        let of_them = pairs.filter(|pair| self.slave(pair.key).nodes.iter().any(|node| slaves.contains(node)));
+        of_them.flat_map(|pair| self.master(pair.key).nodes.iter().copied()).collect()
+    }
+
     /// Slave nodes of slave facets, ascending.
     pub(crate) fn slaves(&self) -> Vec<SlaveIndex> {
         self.patches.slaves(&self.interfaces)

@@ -12,16 +12,19 @@ use zelus_core::vector3::norm;
 use zelus_structural_mechanics::variables::VELOCITY;
 
 use crate::interface::SlaveIndex;
-use crate::pairing::Pairing;
-use crate::pairs::{Formulation, Multiplier};
 use crate::slave_nodes::{SlaveState, SlaveStates};
 use crate::variables::NODAL_H;
 
-/// Slave nodes within a mesh size of a master, or within their motion of two steps, and the nodes of those masters, ascending. Nodes of
-/// `before` stay until they are twice as far.
-pub(crate) fn near_nodes(part: &ModelPart, pairing: &Pairing, states: &SlaveStates, before: &[u32]) -> Vec<u32> {
+/// Slave nodes within a mesh size of a master, or within their motion of two steps, and `masters` of those slave nodes, ascending.
+/// `nodes` are those of the interfaces. Nodes of `before` stay until they are twice as far.
+pub(crate) fn near_nodes(
+    part: &ModelPart,
+    nodes: &[u32],
+    states: &SlaveStates,
+    masters: impl FnOnce(&BTreeSet<u32>) -> BTreeSet<u32>,
+    before: &[u32],
+) -> Vec<u32> {
     let Some(velocity) = part.nodes.history.get(VELOCITY.name()) else { return Vec::new() };
-    let nodes = pairing.nodes();
     let fastest = nodes.iter().map(|&node| norm(velocity.vector(0, node as usize))).fold(0.0, f64::max);
     let motion = 2.0 * fastest * part.info.delta_time;
     let sizes = part.nodes.values.values(&NODAL_H, 0);
@@ -31,13 +34,8 @@ pub(crate) fn near_nodes(part: &ModelPart, pairing: &Pairing, states: &SlaveStat
         state.kinematics.area > 0.0 && state.kinematics.weighted_gap < distance * state.kinematics.area
     };
     let mut near: BTreeSet<u32> = states.iter().filter(is_near).map(|(slave, _)| states.mesh_node(slave)).collect();
-    let mut masters = BTreeSet::new();
-    for pair in pairing.blocks.iter().flat_map(|block| block.pairs()).filter(|pair| pair.overlapping) {
-        if pairing.slave(pair.key).nodes.iter().any(|node| near.contains(node)) {
-            masters.extend(pairing.master(pair.key).nodes.iter().copied());
-        }
-    }
-    near.append(&mut masters);
+    let mut of_near = masters(&near);
+    near.append(&mut of_near);
     near.into_iter().collect()
 }
 
@@ -46,14 +44,14 @@ const LEAST_GAIN: f64 = 0.1;
 
 /// Whether the step is too coarse for the nodes that closed or opened in it.
 ///
-/// `tolerance` is the share of the energy of motion that it may make or lose; 0: any. `start` are the weighted gaps at its start.
-/// `before` is the error of the last attempt at this step, zero at first: where a shorter step has not helped, as where supports
-/// jump, still shorter ones do not either.
+/// `pressure` is that of a slave node at the end of the step (level 0) and at its start (1), as an absolute value. `tolerance` is the
+/// share of the energy of motion that the step may make or lose; 0: any. `start` are the weighted gaps at its start. `before` is the
+/// error of the last attempt at this step, zero at first: where a shorter step has not helped, as where supports jump, still shorter
+/// ones do not either.
 pub(crate) fn coarse_impact(
     part: &ModelPart,
     states: &SlaveStates,
-    formulation: &Formulation,
-    scale_factor: f64,
+    pressure: impl Fn(SlaveIndex, usize) -> f64,
     tolerance: f64,
     (start, before): (&[f64], &mut f64),
 ) -> OuterLoop {
@@ -61,10 +59,6 @@ pub(crate) fn coarse_impact(
     if tolerance == 0.0 || energy == 0.0 {
         return OuterLoop::Done;
     }
-    let pressure = |slave: SlaveIndex, level: usize| match formulation.multiplier {
-        Multiplier::None | Multiplier::Body => 0.0,
-        multiplier => scale_factor * norm(multiplier.value_at(&part.slave_nodes, states.owner(slave), level)),
-    };
     let began = |slave: SlaveIndex| start.get(slave.place()).map_or(0.0, |gap| gap.max(0.0));
     let work = |(slave, state): (SlaveIndex, &SlaveState)| {
         0.5 * (pressure(slave, 0) * began(slave) + pressure(slave, 1) * state.kinematics.weighted_gap.max(0.0))

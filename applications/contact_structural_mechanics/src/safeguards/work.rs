@@ -4,9 +4,7 @@
 //! zero is energy from nothing, as where a corner lies in between the nodes of a coarser slave side.
 
 use serde::{Deserialize, Serialize};
-use zelus_core::assembly::nodal_vectors;
 use zelus_core::diagnostics::{Diagnostic, unfit};
-use zelus_core::entities::EntityBlock;
 use zelus_core::model::ModelPart;
 use zelus_core::strategies::ENERGY_OF_MOTION;
 use zelus_core::{Result, StateMapper};
@@ -58,12 +56,17 @@ impl ContactWork {
         mapper.by_node(&mut self.before);
     }
 
-    /// Adds up the work of the present step, at whose end `blocks` act; collective.
+    /// Adds up the work of the present step, at whose end these forces act (3 a node); `forces` may fill the vector it is given.
+    /// Collective.
     ///
     /// # Errors
-    /// A geometry that cannot be computed with.
-    pub(crate) fn of_step(&mut self, part: &ModelPart, blocks: &[&dyn EntityBlock]) -> Result<()> {
-        self.now = nodal_vectors(part, blocks, &DISPLACEMENT, std::mem::take(&mut self.now))?;
+    /// Errors of `forces`.
+    pub(crate) fn of_step(
+        &mut self,
+        part: &ModelPart,
+        forces: impl FnOnce(Vec<f64>) -> Result<Vec<f64>>,
+    ) -> Result<()> {
+        self.now = forces(std::mem::take(&mut self.now))?;
         self.before.resize(self.now.len(), 0.0);
         let mut sums = [0.0; 2];
         let displacements = [0, 1].map(|level| part.nodes.history.values(&DISPLACEMENT, level));

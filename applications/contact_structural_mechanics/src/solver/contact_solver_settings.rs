@@ -2,8 +2,9 @@
 
 use zelus_core::analysis::{Cutting, ExtensionDefinition, SolverExtensionEntry};
 use zelus_core::model::{MultiplierRequest, ProcessInfo};
-use zelus_core::register;
+use zelus_core::parameters::Settings;
 use zelus_core::strategies::{OFF_NODE_TOLERANCE, ZERO_ROW_TOLERANCE};
+use zelus_core::{Result, register};
 
 use crate::interface::FEATURE_ANGLE;
 use crate::pairs::variables_of;
@@ -76,6 +77,32 @@ impl ContactSolverSettings {
     }
 }
 
+/// Numbers of the settings for impacts, with their names in the step data.
+pub(crate) const IMPACT_NUMBERS: [(&str, &str); 2] =
+    [("impact_energy_tolerance", IMPACT_TOLERANCE), ("largest_energy_gain", LARGEST_ENERGY_GAIN)];
+
+/// The marks of `contact_stabilisation` and `edge_normals`.
+///
+/// # Errors
+/// Other words than theirs.
+pub(crate) fn marks_of_words(settings: &Settings) -> Result<Vec<&'static str>> {
+    let mut marks = Vec::new();
+    for (key, usual, other, mark) in [
+        ("contact_stabilisation", "mass_redistribution", "none", KEEP_MASS),
+        ("edge_normals", "of_master", "averaged", AVERAGED_EDGES),
+    ] {
+        match settings.get_str(key)? {
+            word if word == usual => {}
+            word if word == other => marks.push(mark),
+            word => {
+                let problem = settings.error(key, "invalid-value", format!("\"{key}\" is {word:?}"));
+                return Err(problem.remedy(format!("use {usual:?} or {other:?}")).into());
+            }
+        }
+    }
+    Ok(marks)
+}
+
 register! { SolverExtensionEntry "contact_settings",
     about: "settings of contact at the solver",
     defaults: include_str!("../../../../configs/solvers/contact_settings.json"),
@@ -90,20 +117,7 @@ register! { SolverExtensionEntry "contact_settings",
             Ok(variables.to_vec())
         },
         marks: |settings| {
-            let mut marks = Vec::new();
-            for (key, usual, other, mark) in [
-                ("contact_stabilisation", "mass_redistribution", "none", KEEP_MASS),
-                ("edge_normals", "of_master", "averaged", AVERAGED_EDGES),
-            ] {
-                match settings.get_str(key)? {
-                    word if word == usual => {}
-                    word if word == other => marks.push(mark),
-                    word => {
-                        let problem = settings.error(key, "invalid-value", format!("\"{key}\" is {word:?}"));
-                        return Err(problem.remedy(format!("use {usual:?} or {other:?}")).into());
-                    }
-                }
-            }
+            let mut marks = marks_of_words(settings)?;
             for (key, mark) in [
                 ("ensure_contact", ENSURE_CONTACT),
                 ("adjust_initial", ADJUST_INITIAL),
@@ -131,15 +145,14 @@ register! { SolverExtensionEntry "contact_settings",
         values: |settings| {
             let keys = [
                 ("delta_time_factor_for_contact", DELTA_TIME_FACTOR),
-                ("impact_energy_tolerance", IMPACT_TOLERANCE),
-                ("largest_energy_gain", LARGEST_ENERGY_GAIN),
                 ("largest_penetration", LARGEST_PENETRATION),
                 ("adjust_tolerance", ADJUST_TOLERANCE),
                 ("feature_angle", CONTACT_FEATURE_ANGLE),
                 ("mixed_ulm_solver_parameters.dual_lm_off_node_tolerance", OFF_NODE_TOLERANCE),
                 ("mixed_ulm_solver_parameters.dual_lm_zero_row_tolerance", ZERO_ROW_TOLERANCE),
             ];
-            keys.into_iter().map(|(key, name)| Ok((name, settings.get_f64(key)?))).collect()
+            let numbers = keys.into_iter().chain(IMPACT_NUMBERS);
+            numbers.map(|(key, name)| Ok((name, settings.get_f64(key)?))).collect()
         },
         ..ExtensionDefinition::NOTHING
     },

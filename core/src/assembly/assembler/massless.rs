@@ -49,7 +49,7 @@ impl Assembler {
             self.stamps.bulk_graph += 1;
         }
         let equations = self.equations.map();
-        if self.inertia.redistribution.choose_unknowns(&system.dofs, |number| equations.is_free(number)) {
+        if self.inertia.redistribution.choose_unknowns(&system.dofs, |number| !equations.is_fixed(number)) {
             self.inertia.forget_mass();
             self.bulk.forget_key();
         }
