@@ -175,7 +175,7 @@ mod tests {
         let mut part = ModelPart::new("Heat");
         part.nodes = zelus_core::model::Nodes::new(vec![1, 2, 3, 4], vec![[0.0; 3]; 4]);
         part.nodes.history.add(&TEMPERATURE);
-        let contact = ContactPoint { pressure: 0.0, gap: 0.3, touches: false };
+        let contact = ContactPoint { pressure: 0.0, gap: 0.3, touches: false, areas: [0.9, 1.2] };
         let point =
             |a: f64, b: f64| Point { n: vec![a, 1.0 - a, b, 1.0 - b], weight: 0.4, contact, friction: [0.0; 2] };
         let entry = require_kind(EntityRole::Condition, "ContactConductanceCondition2D2N").unwrap();

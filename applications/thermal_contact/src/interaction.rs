@@ -91,10 +91,19 @@ impl ThermalContact {
                 let touches = found.gap <= self.settings.touching * size;
                 (touches, 0.0, if touches { 0.0 } else { found.gap })
             };
-            let round = if self.settings.axisymmetric { TAU * found.position[radial(&part.info)] } else { 1.0 };
             let [masters, slaves] =
                 [(&found.master, master), (&found.slave, slave)].map(|(n, of)| &n[..of.nodes.len()]);
-            let contact = ContactPoint { pressure: pressure.max(0.0), gap: gap.max(0.0), touches };
+            let (round, opposite) = if self.settings.axisymmetric {
+                let radius = found.position[radial(&part.info)];
+                let place = |&node: &u32| part.nodes.current[node as usize][radial(&part.info)];
+                let of_master: f64 = master.nodes.iter().map(place).zip(masters).map(|(r, n)| n * r).sum();
+                (TAU * radius, if radius > 0.0 { of_master / radius } else { 1.0 })
+            } else {
+                (1.0, 1.0)
+            };
+            let (mean, of_master) = if touches { (1.0, 1.0) } else { areas_of_gap(found.spread, opposite) };
+            let areas = [1.0 / mean, of_master / mean];
+            let contact = ContactPoint { pressure: pressure.max(0.0), gap: gap.max(0.0), touches, areas };
             let work = if is_computed { sum(&work) } else { 0.0 };
             let across = self.settings.across.as_ref().map_or(0.0, |(coefficient, speed)| {
                 let here = SpaceTime { current: found.position, initial: found.position, time: part.info.time };
@@ -103,7 +112,7 @@ impl ThermalContact {
             let power = self.settings.friction * (work / part.info.delta_time + across);
             (touches || acts_apart).then(|| Point {
                 n: [masters, slaves].concat(),
-                weight: found.weight * round,
+                weight: found.weight * round * mean,
                 contact,
                 friction: [share * power, (1.0 - share) * power],
             })
@@ -120,6 +129,21 @@ impl ThermalContact {
         let surfaces = &self.settings.surfaces;
         (0..surfaces.interfaces().len()).flat_map(|at| surfaces.of_pairs(part, at, of_pair)).collect()
     }
+}
+
+/// Points and weights of the mean along a gap.
+const GAUSS: [[f64; 2]; 3] =
+    [[0.112_701_665_379_258_3, 5.0 / 18.0], [0.5, 8.0 / 18.0], [0.887_298_334_620_741_7, 5.0 / 18.0]];
+/// Least share of the slave's area that a gap narrows to.
+const NARROWEST: f64 = 0.05;
+
+/// The area through which heat passes a gap, and that of the master, in that of the slave: 1/∫ ds/A over the way, which is exact for
+/// cylinders and spheres. `spread` is that of [`FacingPoint`]; `opposite` is the radius at the master in that at the slave.
+fn areas_of_gap([half, full]: [f64; 2], opposite: f64) -> (f64, f64) {
+    let (slope, bend) = (4.0 * half - full - 3.0, 2.0 * (1.0 + full - 2.0 * half));
+    let area = |s: f64| ((1.0 + s * (slope + s * bend)) * (1.0 + s * (opposite - 1.0))).max(NARROWEST);
+    let resistance: f64 = GAUSS.iter().map(|[s, weight]| weight / area(*s)).sum();
+    (1.0 / resistance, area(1.0))
 }
 
 /// The work that friction has done on a slave node in the last step (force times way per area).

@@ -17,11 +17,13 @@ pub struct ContactPoint {
     pub gap: f64,
     /// Whether they touch.
     pub touches: bool,
+    /// Areas of slave and master in the area that conductance counts by, the mean over the way between them: 1 between planes.
+    pub areas: [f64; 2],
 }
 
 /// The conductance of a contact.
 pub trait ConductanceLaw: Send + Sync {
-    /// Heat by area and difference of temperature (power per area and temperature) at the temperatures of slave and master.
+    /// Heat by mean area and difference of temperature (power per area and temperature) at the temperatures of slave and master.
     fn conductance(&self, contact: &ContactPoint, temperatures: [ByTemperatures; 2]) -> ByTemperatures;
 
     /// Whether heat passes without touch.

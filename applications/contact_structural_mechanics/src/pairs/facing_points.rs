@@ -2,7 +2,7 @@
 
 use zelus_core::geometry::{FacetShape, interpolate};
 use zelus_core::model::ModelPart;
-use zelus_core::vector3::{dot, sub};
+use zelus_core::vector3::{add, cross, dot, norm, scale, sub};
 
 use crate::interface::Facet;
 use crate::mortar::for_each_point;
@@ -21,6 +21,9 @@ pub struct FacingPoint {
     pub weight: f64,
     /// Way from the slave to the master along the slave's normal (length), negative inside the master.
     pub gap: f64,
+    /// Area across the normals half way to the master and at the master, in that at the slave: 1 between planes, other than 1 where
+    /// normals spread or close in, as in the gap between two cylinders.
+    pub spread: [f64; 2],
 }
 
 /// The points of the overlap of two facets where they are now; none where they do not overlap or carry no contact.
@@ -59,16 +62,35 @@ fn points_of(
     for_each_point(&geometry, settings, &mut |point| {
         let x = interpolate(&point.slave, &geometry.slave);
         let y = interpolate(&point.master, &geometry.master);
+        let at = point.local;
+        let normal = interpolate(&point.slave, &geometry.nodal_normals);
+        let size = norm(normal);
+        let gap = if size > 0.0 { dot(sub(y, x), normal) / size } else { dot(sub(y, x), geometry.slave_normal) };
         let mut found = FacingPoint {
             slave: [0.0; MOST_NODES],
             master: [0.0; MOST_NODES],
             position: x,
             weight: point.weight,
-            gap: dot(sub(y, x), geometry.slave_normal),
+            gap,
+            spread: [0.5, 1.0].map(|way| spread(&geometry, at, normal, way * gap)),
         };
         found.slave[..slave_shape.nodes].copy_from_slice(&point.slave);
         found.master[..master_shape.nodes].copy_from_slice(&point.master);
         out.push(found);
     });
     Some(out)
+}
+
+/// Area across the normals at a distance along them, in that of the slave's point `at`.
+fn spread(geometry: &PairGeometry<f64>, at: [f64; 2], normal: [f64; 3], distance: f64) -> f64 {
+    let shape = geometry.slave_shape;
+    let tangents = shape.tangents(&geometry.slave, at);
+    let turns = shape.tangents(&geometry.nodal_normals, at);
+    let across = |far: f64| {
+        let [t, s] = [0, 1].map(|a| add(tangents[a], scale(turns[a], far)));
+        let area = if shape.space == 2 { [t[1], -t[0], 0.0] } else { cross(t, s) };
+        dot(area, normal)
+    };
+    let (here, there) = (across(0.0), across(distance / norm(normal)));
+    if here == 0.0 { 1.0 } else { there / here }
 }

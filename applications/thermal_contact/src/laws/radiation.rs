@@ -6,13 +6,24 @@ use zelus_core::scalar::Real;
 use crate::law::{ByTemperatures, ConductanceLaw, ContactConductanceEntry, ContactPoint};
 
 struct Radiation {
-    /// ε σ.
-    factor: f64,
+    /// Emissivities of slave and master.
+    emissivities: [f64; 2],
+    /// σ.
+    constant: f64,
 }
 
 impl ConductanceLaw for Radiation {
     fn conductance(&self, contact: &ContactPoint, [a, b]: [ByTemperatures; 2]) -> ByTemperatures {
-        if contact.touches { ByTemperatures::constant(0.0) } else { (a * a + b * b) * (a + b) * self.factor }
+        if contact.touches {
+            return ByTemperatures::constant(0.0);
+        }
+        let ([slave, master], [of_slave, of_master]) = (contact.areas, self.emissivities);
+        let exchanged = if slave <= master {
+            slave / (1.0 / of_slave + slave / master * (1.0 / of_master - 1.0))
+        } else {
+            master / (1.0 / of_master + master / slave * (1.0 / of_slave - 1.0))
+        };
+        (a * a + b * b) * (a + b) * (self.constant * exchanged)
     }
 
     fn acts_apart(&self) -> bool {
@@ -22,11 +33,12 @@ impl ConductanceLaw for Radiation {
 
 register! { ContactConductanceEntry "radiation",
     about: "radiation across the gap; temperatures in kelvin",
-    source: "q = ε σ (T₁⁴ − T₂⁴) with 1/ε = 1/ε₁ + 1/ε₂ − 1",
+    source: "q = ε σ (T₁⁴ − T₂⁴) per area of the inner face 1, with 1/ε = 1/ε₁ + A₁/A₂ (1/ε₂ − 1)",
     defaults: include_str!("../../../../configs/contact_conductances/radiation.json"),
     build: |settings| {
-        let [a, b] = [settings.get_positive("emissivity_of_slave")?, settings.get_positive("emissivity_of_master")?];
-        let factor = settings.get_positive("stefan_boltzmann_constant")? / (1.0 / a + 1.0 / b - 1.0);
-        Ok(Box::new(Radiation { factor }))
+        Ok(Box::new(Radiation {
+            emissivities: [settings.get_positive("emissivity_of_slave")?, settings.get_positive("emissivity_of_master")?],
+            constant: settings.get_positive("stefan_boltzmann_constant")?,
+        }))
     },
 }
