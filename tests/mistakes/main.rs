@@ -22,7 +22,7 @@ use table::{Files, MISTAKES, Mistake, PRESSED, Told, contact, load, support};
 const DECK: &str = "ProjectParameters.json";
 const MATERIALS: &str = "StructuralMaterials.json";
 const MESH: &str = "mesh.mdpa";
-const CODES: [&str; 29] = [
+const CODES: [&str; 30] = [
     "acts-on-nothing",
     "coincident-nodes",
     "collapsed-element",
@@ -38,6 +38,7 @@ const CODES: [&str; 29] = [
     "invalid-tolerance",
     "listed-twice",
     "load-given-twice",
+    "load-on-support",
     "locking",
     "mutual-pairs",
     "negative-friction",

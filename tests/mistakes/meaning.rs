@@ -233,8 +233,29 @@ fn tables_that_begin_late_or_lack_values_are_told() {
 }
 
 #[test]
-fn a_loaded_face_of_no_element_is_told() {
-    let across = check(
+fn a_loaded_face_within_a_body_is_told() {
+    // Node 13 is at the other end of the body; the other nodes are those of an edge between two elements.
+    let across = loaded_line(|[first, _], _| [first, "13".to_owned()]);
+    assert!(
+        across.contains("warning[loose-load]") && across.contains("1 condition with a load is on no face"),
+        "{across}"
+    );
+    let inner = loaded_line(|_, elements| {
+        let edges = |nodes: &[String]| -> Vec<[String; 2]> {
+            let count = nodes.len();
+            let edge = |at: usize| [nodes[at].clone(), nodes[(at + 1) % count].clone()];
+            (0..count).map(edge).collect()
+        };
+        let all: Vec<[String; 2]> = elements.iter().flat_map(|nodes| edges(nodes)).collect();
+        let shared = all.iter().find(|[a, b]| all.contains(&[b.clone(), a.clone()]));
+        shared.expect("an edge between two elements").clone()
+    });
+    assert!(inner.contains("1 condition with a load is on a face between two elements"), "{inner}");
+}
+
+/// Messages of `check` when the first loaded line of the pressed blocks has other nodes, chosen from its own and those of the elements.
+fn loaded_line(choose: impl Fn([String; 2], &[Vec<String>]) -> [String; 2]) -> String {
+    check(
         PRESSED,
         |_| (),
         |folder| {
@@ -243,15 +264,15 @@ fn a_loaded_face_of_no_element_is_told() {
             let begin = mesh.find("Begin Conditions LineLoadCondition2D2N").expect("loaded lines");
             let first = mesh[begin..].lines().nth(1).expect("a condition").to_owned();
             let words: Vec<&str> = first.split_whitespace().collect();
-            // Node 13 is at the other end of the body.
-            let changed = [words[0], words[1], words[2], "13"].join(" ");
+            let of_elements = &mesh[mesh.find("Begin Elements").expect("elements")..];
+            let rows = of_elements.lines().skip(1).take_while(|line| !line.starts_with("End"));
+            let elements: Vec<Vec<String>> =
+                rows.map(|row| row.split_whitespace().skip(2).map(str::to_owned).collect()).collect();
+            let [a, b] = choose([words[2].to_owned(), words[3].to_owned()], &elements);
+            let changed = [words[0], words[1], &a, &b].join(" ");
             std::fs::write(&path, mesh.replacen(&first, &changed, 1)).expect("the mesh");
         },
-    );
-    assert!(
-        across.contains("warning[loose-load]") && across.contains("1 condition with a load is on no face"),
-        "{across}"
-    );
+    )
 }
 
 #[test]

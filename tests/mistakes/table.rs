@@ -92,6 +92,19 @@ pub const MISTAKES: &[Mistake] = &[
         names: "LINE_LOAD of 3 conditions is given by",
     },
     Mistake {
+        what: "a load on nodes that a support holds",
+        case: PRESSED,
+        make: |Files { deck, .. }| {
+            let top = json!({"python_module": "assign_vector_variable_process", "Parameters": {
+                "model_part_name": "Structure.Top", "variable_name": "DISPLACEMENT", "value": [0.0, 0.0, 0.0]}});
+            deck["processes"]["constraints_process_list"].as_array_mut().expect("supports").push(top);
+        },
+        exit: 0,
+        told: Told::Before,
+        code: "load-on-support",
+        names: "on Structure.Top acts on supports alone",
+    },
+    Mistake {
         what: "a pair of faces of one body",
         case: PRESSED,
         make: |Files { deck, .. }| {

@@ -51,13 +51,34 @@ impl Material {
         entity: &EntityView<'_, NODES>,
         conductivity: &Local<'_, NODES>,
     ) -> Result<(), String> {
-        match self.conductivity.unknown_in(conductivity) {
-            None => Ok(()),
-            Some(name) => Err(format!(
-                "its properties {} have no {name} (\"Variables\" of the materials), and no process sets it",
-                entity.properties.id
-            )),
-        }
+        given(entity, self.conductivity.unknown_in(conductivity), "")
+    }
+
+    /// # Errors
+    /// A density or a specific heat that neither the material nor a process gives where a flow carries heat.
+    pub fn check_capacity<const NODES: usize>(
+        &self,
+        entity: &EntityView<'_, NODES>,
+        [density, specific_heat]: [&Local<'_, NODES>; 2],
+    ) -> Result<(), String> {
+        let missing = self.density.unknown_in(density).or_else(|| self.specific_heat.unknown_in(specific_heat));
+        given(entity, missing, ": its velocity carries no heat without it")
+    }
+}
+
+/// # Errors
+/// A coefficient is missing.
+fn given<const NODES: usize>(
+    entity: &EntityView<'_, NODES>,
+    missing: Option<&'static str>,
+    why: &str,
+) -> Result<(), String> {
+    match missing {
+        None => Ok(()),
+        Some(name) => Err(format!(
+            "its properties {} have no {name} (\"Variables\" of the materials), and no process sets it{why}",
+            entity.properties.id
+        )),
     }
 }
 

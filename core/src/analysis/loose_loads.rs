@@ -1,11 +1,13 @@
-//! Conditions that carry loads and lie on no face of a body.
+//! Conditions that carry loads and lie on no outer face of a body.
 
 use rustc_hash::FxHashMap;
 
 use crate::diagnostics::{Diagnostic, Report, counted};
+use crate::geometry::Facet;
 use crate::model::ModelPart;
 
-/// Warns of faces with loads whose nodes belong to bodies, but to no element in common: their loads act within or across bodies.
+/// Warns of faces with loads whose nodes belong to bodies, but to no element in common, or to two: their loads act within or across
+/// bodies.
 ///
 /// On several ranks the element of a face may be elsewhere: there nothing is said.
 pub(super) fn warn_of_loose_loads(part: &ModelPart, problems: &mut Report) {
@@ -26,22 +28,39 @@ pub(super) fn warn_of_loose_loads(part: &ModelPart, problems: &mut Report) {
             own.for_each(|node| elements_of.get_mut(node).into_iter().for_each(|of_node| of_node.push(at)));
         }
     }
-    let is_loose = |face: &&u32| {
-        let own = conditions.nodes(**face);
-        own.iter().all(|node| !elements_of[node].is_empty())
-            && !elements_of[&own[0]].iter().any(|&at| own.iter().all(|node| elements.nodes(at).contains(node)))
+    // Elements of a face, where all of its nodes are of elements.
+    let owners = |face: u32| {
+        let own = conditions.nodes(face);
+        let of_face = |at: &&u32| {
+            let (nodes, cell) = (elements.nodes(**at), elements.kinds[**at as usize].cell.map(|shape| shape.cell()));
+            let sides = cell.map_or(&[][..], |cell| if cell.dim == 3 { cell.faces } else { cell.edges });
+            let has = |side: &Facet, node: &u32| side.nodes.iter().any(|&at| nodes[at] == *node);
+            sides.iter().any(|side| own.iter().all(|node| has(side, node)))
+        };
+        let belongs = own.iter().all(|node| !elements_of[node].is_empty());
+        belongs.then(|| elements_of[&own[0]].iter().filter(of_face).count())
     };
-    let loose: Vec<&u32> = faces.iter().filter(is_loose).collect();
-    let Some(&&first) = loose.first() else { return };
-    let word = counted(loose.len(), "condition with a load is", "conditions with loads are");
-    let ids: Vec<String> =
-        conditions.nodes(first).iter().map(|&node| part.nodes.ids[node as usize].to_string()).collect();
-    let fact = format!(
-        "{word} on no face of an element, the first is {} {} with nodes {}",
-        conditions.kinds[first as usize].name,
-        conditions.ids[first as usize],
-        ids.join(" ")
-    );
-    let remedy = "the load acts within or across bodies: check the nodes of the condition";
-    problems.push(Diagnostic::warning("loose-load", fact).remedy(remedy));
+    let kinds = faces.iter().map(|&face| (face, owners(face)));
+    let (loose, inner): (Vec<_>, Vec<_>) =
+        kinds.filter(|(_, count)| count.is_some_and(|count| count != 1)).partition(|(_, count)| *count == Some(0));
+    for (found, word, where_it_acts) in [
+        (loose, "on no face of an element", "the load acts within or across bodies: check the nodes of the condition"),
+        (
+            inner,
+            "on a face between two elements",
+            "the load acts within the body: take the condition out, or check its nodes",
+        ),
+    ] {
+        let Some(&(first, _)) = found.first() else { continue };
+        let count = counted(found.len(), "condition with a load is", "conditions with loads are");
+        let ids: Vec<String> =
+            conditions.nodes(first).iter().map(|&node| part.nodes.ids[node as usize].to_string()).collect();
+        let fact = format!(
+            "{count} {word}, the first is {} {} with nodes {}",
+            conditions.kinds[first as usize].name,
+            conditions.ids[first as usize],
+            ids.join(" ")
+        );
+        problems.push(Diagnostic::warning("loose-load", fact).remedy(where_it_acts));
+    }
 }

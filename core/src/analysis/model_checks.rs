@@ -1,13 +1,13 @@
 //! Whether a model says one thing once: entities listed twice, unknowns that are prescribed two values, loads that are given twice.
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use zelus_linear_algebra::parallel;
 
 use crate::assembly::{DofTable, Equations};
 use crate::diagnostics::{Diagnostic, Report, Result, counted};
 use crate::geometry::Shape;
-use crate::model::{EntityRole, EntityTable, ModelPart, ScalarVariable, SubPart, mesh_box};
-use crate::processes::{Load, LoadCarrier, Prescription, Process};
+use crate::model::{EntityRole, EntityTable, ModelPart, Owner, ScalarVariable, SubPart, mesh_box};
+use crate::processes::{Load, LoadCarrier, Prescription, Process, is_body_load};
 use crate::vector3::norm;
 
 /// Difference of two values that are the same, as a share of the larger.
@@ -227,5 +227,45 @@ pub(super) fn warn_of_loads_given_twice(part: &ModelPart, processes: &[Box<dyn P
         );
         let remedy = "give the sum in one process, take what both have out of one of the parts, or let their intervals follow each other";
         problems.push(Diagnostic::warning("load-given-twice", fact).at(later.place.clone()).remedy(remedy));
+    }
+}
+
+/// Warns of loads on conditions and nodes whose unknowns supports prescribe one and all at both `times`: they act on the supports alone.
+/// Collective.
+pub(super) fn warn_of_supported_loads(
+    part: &ModelPart,
+    dofs: &DofTable,
+    processes: &[Box<dyn Process>],
+    times: [f64; 2],
+    problems: &mut Report,
+) {
+    let loads: Vec<Load> = processes.iter().flat_map(|process| process.loads(part)).collect();
+    let prescribed = times.map(|time| -> FxHashSet<(ScalarVariable, u32)> {
+        let all = prescriptions(part, processes, time).into_iter();
+        all.flat_map(|own| own.values.into_iter().map(move |(node, _)| (own.variable, node))).collect()
+    });
+    let variables: Vec<ScalarVariable> = dofs.variables().collect();
+    let is_free = |node: u32| {
+        let own = variables.iter().filter(|&&variable| dofs.number_of(variable, Owner::Node(node)).is_some());
+        own.into_iter().any(|&variable| prescribed.iter().any(|held| !held.contains(&(variable, node))))
+    };
+    let acts = |load: &Load| match load.on {
+        LoadCarrier::Elements => true,
+        LoadCarrier::Conditions => {
+            load.members.iter().flat_map(|&at| part.conditions.nodes(at)).any(|&node| is_free(node))
+        }
+        LoadCarrier::History | LoadCarrier::Nodes => load.members.iter().any(|&node| is_free(node)),
+    };
+    let mut free: Vec<[f64; 2]> =
+        loads.iter().map(|load| [load.members.len() as f64, f64::from(u8::from(acts(load)))]).collect();
+    part.ranks.sum(free.as_flattened_mut());
+    let all_in_supports = loads.iter().zip(free).filter(|(_, [members, acts])| *members > 0.0 && *acts == 0.0);
+    for (load, _) in all_in_supports.filter(|(load, _)| load.variables.iter().all(|of| !is_body_load(of.column))) {
+        let fact = format!(
+            "{} by {} acts on supports alone: they hold every node of it in all directions",
+            load.variables[0].column, load.by
+        );
+        let remedy = "take the nodes out of the support, or leave the load out";
+        problems.push(Diagnostic::warning("load-on-support", fact).at(load.place.clone()).remedy(remedy));
     }
 }

@@ -117,7 +117,7 @@ impl TimeStepping {
         }
     }
 
-    /// Error of a first step so short that the run would not end, or warning of one that is longer than twice the run and is
+    /// Error of steps so short that the run would not end, or warning of one that is longer than twice the run and is
     /// therefore shortened.
     pub fn problem(&self, start: f64, end: f64) -> Option<Diagnostic> {
         let length = self.next(start).ok()?;
@@ -126,6 +126,10 @@ impl TimeStepping {
                 format!("steps of {length} from {start} to {end} are more than {MOST_STEPS:e}: the run would not end");
             return Some(Diagnostic::error("time-step", fact).remedy("write a longer \"time_step\""));
         }
+        if let Some(fact) = self.never_ends(start, end) {
+            let remedy = "let every step be longer than zero up to \"end_time\"; beyond its last row a table goes on along its last line";
+            return Some(Diagnostic::error("time-step", fact).remedy(remedy));
+        }
         let (_, is_shortened) = self.target(start, length, [start, end]);
         is_shortened.then(|| {
             let fact =
@@ -133,6 +137,28 @@ impl TimeStepping {
             let remedy = "write a time step that fits between \"start_time\" and \"end_time\"";
             Diagnostic::warning("time-step", fact).remedy(remedy)
         })
+    }
+
+    /// The fact that steps of a rule that varies come to nothing before `end`, among the steps that can be counted.
+    fn never_ends(&self, start: f64, end: f64) -> Option<String> {
+        if matches!(self.rule, StepLength::Constant(_)) {
+            return None;
+        }
+        let mut time = start;
+        for _ in 0..MOST_COUNTED {
+            if time >= end {
+                return None;
+            }
+            // A time without a step ends the run with its own error.
+            let length = self.next(time).ok()?;
+            if (end - start) / length > MOST_STEPS {
+                return Some(format!(
+                    "\"time_stepping\" gives a step of {length:e} at time {time}: the run would not end"
+                ));
+            }
+            time = self.target(time, length, [start, end]).0;
+        }
+        None
     }
 
     /// Steps from `start` to `end`, where they can be counted.
@@ -274,6 +300,19 @@ mod tests {
         assert_eq!(ends(r#"{ "time_step": 1.1, "last_step": "whole" }"#, 1.0), [1.1]);
         let beyond = ends(r#"{ "time_step": 0.1, "last_step": "while_below" }"#, 1.0);
         assert!(beyond.len() == 11 && beyond[10] > 1.09, "ten tenths sum up to less than one");
+    }
+
+    #[test]
+    fn steps_that_come_to_nothing_are_refused() {
+        let problem = |table: &str| {
+            let deck =
+                Document::from_str(&format!(r#"{{ "time_step_table": {table} }}"#), "deck.json").expect("JSON").root;
+            let stepping = TimeStepping::from_node(&deck, &mut Report::new()).expect("steps");
+            stepping.problem(0.0, 4.0).map(|problem| problem.to_string())
+        };
+        let said = problem("[[0.0, 0.2], [1.0, 0.1]]").expect("an error");
+        assert!(said.contains("at time 1.99") && said.contains("would not end"), "{said}");
+        assert_eq!(problem("[[0.0, 0.2], [1.0, 0.1], [4.0, 0.1]]"), None);
     }
 
     #[test]

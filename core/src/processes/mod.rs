@@ -36,6 +36,7 @@ pub use local_axes::LocalAxes;
 pub use output::{
     OutputFormat, OutputFormatEntry, OutputFormatFactory, OutputFrame, SurfaceFrame, largest_results, usual_results,
 };
+pub(crate) use prescription::is_body_load;
 pub use prescription::{Load, LoadCarrier, Prescription};
 pub use process::{NamedSurface, Process, ProcessEntry, ProcessFactory, ProcessRequest};
 pub use scalar_value::ScalarValue;

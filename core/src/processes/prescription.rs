@@ -54,7 +54,7 @@ pub(super) fn is_load(name: &str) -> bool {
 }
 
 /// Whether elements of any kind are loaded by that variable of their nodes.
-pub(super) fn is_body_load(name: &str) -> bool {
+pub(crate) fn is_body_load(name: &str) -> bool {
     registry::all::<ElementEntry>().iter().any(|kind| kind.body_load.is_some_and(|(variable, _)| variable == name))
 }
 

@@ -125,6 +125,9 @@ impl<T: Terms, const NODES: usize, const DIM: usize> Kernel<NODES, NODES> for Eq
         } else {
             self.material.check_conductivity(entity, &conductivity)?;
         }
+        if velocity.iter().flatten().any(|component| *component != 0.0) {
+            self.material.check_capacity(entity, [&density, &specific_heat])?;
+        }
         let size = stream_size(self.rule.shape(), &entity.current);
         let is_centred = view.info.has(AT_CENTRE) && T::TRANSIENT && !T::ADVECTED && !T::AXISYMMETRIC;
         let at_centre = is_centred.then(|| self.at_centre(&entity.current));

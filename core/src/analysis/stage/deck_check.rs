@@ -5,7 +5,7 @@ use super::super::coincident_nodes::warn_of_coincident_nodes;
 use super::super::loose_loads::warn_of_loose_loads;
 use super::super::model_checks::{
     check_constraints, prescriptions, warn_of_collapsed, warn_of_contradictions, warn_of_height,
-    warn_of_loads_given_twice, warn_of_twins,
+    warn_of_loads_given_twice, warn_of_supported_loads, warn_of_twins,
 };
 use super::super::no_load::warn_of_no_load;
 use super::super::rigid_body_modes::report_restraints;
@@ -49,6 +49,7 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<(Vec<Diagnostic
     warn_of_coincident_nodes(part, surfaces, &mut problems);
     warn_of_loose_loads(part, &mut problems);
     warn_of_loads_given_twice(part, processes, &mut problems);
+    warn_of_supported_loads(part, &system.dofs, processes, [middle, schedule.end_time], &mut problems);
     warn_of_body_loads(part, system, processes, &mut problems);
     warn_of_contradictions(part, processes, [middle, schedule.end_time], &mut problems);
     let times = schedule.first_step_end().into_iter().chain([middle, schedule.end_time]);
