@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 
 use crate::{address_space, parallel};
 
-/// Entries of a row, on average, from which on factors fill like those of solids in space.
-const MANY_ENTRIES: usize = 40;
+/// Entries of a row, on average, from which on factors fill like those of solids in space: linear tetrahedra have 38 and more,
+/// elements of the plane at most 32.
+const MANY_ENTRIES: usize = 34;
 /// Numbers of a factor in space for each `n^(4/3)`.
 const FACTOR_IN_SPACE: f64 = 20.0;
 /// Numbers of a factor in the plane for each `n log₂ n`.

@@ -39,6 +39,36 @@ impl<V: Copy> Nodal<V> {
         Self::new(values.len(), |n| values[n])
     }
 
+    /// No values, where there is room for them.
+    #[inline(always)]
+    pub fn empty() -> Self {
+        Self { len: 0, items: [const { MaybeUninit::uninit() }; MOST_FACET_NODES] }
+    }
+
+    /// Takes the values of a function of the node in place of those there are.
+    ///
+    /// # Panics
+    /// If there are more than [`MOST_FACET_NODES`].
+    #[inline(always)]
+    pub fn refill(&mut self, len: usize, mut of: impl FnMut(usize) -> V) {
+        for (n, item) in self.items[..len].iter_mut().enumerate() {
+            item.write(of(n));
+        }
+        self.len = len;
+    }
+
+    /// Makes room for so many values, each first made by `of` and then changed in place by `change`: large values are not moved.
+    ///
+    /// # Panics
+    /// If there are more than [`MOST_FACET_NODES`].
+    #[inline(always)]
+    pub fn refill_in_place(&mut self, len: usize, of: impl Fn() -> V, mut change: impl FnMut(usize, &mut V)) {
+        for (n, item) in self.items[..len].iter_mut().enumerate() {
+            change(n, item.write(of()));
+        }
+        self.len = len;
+    }
+
     /// The values of a function of these ones.
     #[inline(always)]
     pub fn map<W: Copy>(&self, mut of: impl FnMut(V) -> W) -> Nodal<W> {
@@ -96,5 +126,10 @@ mod tests {
         assert_eq!(values, Nodal::from([0.0, 5.0, 2.0]));
         assert_ne!(values, Nodal::of(&[0.0, 5.0]));
         assert_eq!(format!("{values:?}"), "[0.0, 5.0, 2.0]");
+        values.refill(2, |n| 3.0 * n as f64);
+        assert_eq!(*values, [0.0, 3.0]);
+        let mut rows: Nodal<Nodal<f64>> = Nodal::empty();
+        rows.refill_in_place(2, Nodal::empty, |j, row| row.refill(3, |k| (3 * j + k) as f64));
+        assert_eq!(format!("{rows:?}"), "[[0.0, 1.0, 2.0], [3.0, 4.0, 5.0]]");
     }
 }

@@ -79,6 +79,27 @@ impl<T: Real> Operators<T> {
         Self { d: slave.nodal(|_| d), m: slave.nodal(|_| m) }
     }
 
+    /// Room for operators, which with derivatives are large: 17 kB.
+    pub fn room() -> Self {
+        Self { d: Nodal::empty(), m: Nodal::empty() }
+    }
+
+    /// Takes no overlap at all in place of what there is.
+    pub fn reset(&mut self, slave: &FacetShape, master: &FacetShape) {
+        for (rows, width) in [(&mut self.d, slave.nodes), (&mut self.m, master.nodes)] {
+            rows.refill_in_place(slave.nodes, Nodal::empty, |_, row| row.refill(width, |_| T::zero()));
+        }
+    }
+
+    /// Takes operators without derivatives in place of those there are.
+    pub fn take_constants(&mut self, from: &Operators<f64>) {
+        for (rows, from) in [(&mut self.d, &from.d), (&mut self.m, &from.m)] {
+            rows.refill_in_place(from.len(), Nodal::empty, |j, row| {
+                row.refill(from[j].len(), |k| T::constant(from[j][k]));
+            });
+        }
+    }
+
     /// Sets all entries to zero.
     pub fn clear(&mut self) {
         self.d.iter_mut().chain(self.m.iter_mut()).for_each(|row| row.fill(T::zero()));

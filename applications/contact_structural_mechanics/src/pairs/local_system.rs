@@ -15,7 +15,7 @@ use crate::mortar::{
 };
 use zelus_core::geometry::Nodal;
 use zelus_core::model::SlaveNodes;
-use zelus_core::scalar::{Dual, Real};
+use zelus_core::scalar::Real;
 use zelus_core::vector3::constant;
 
 /// The scalars that laws are evaluated in.
@@ -143,6 +143,7 @@ impl PairSystem<'_> {
     /// Writes the right-hand side of a pair and its tangent −∂b/∂(unknowns); zero without overlap.
     /// `found` gives the operators without derivatives, `seeded` the pair with [`LANES`] of its displacement unknowns as variables,
     /// from a number on. `lhs` has a row for each unknown, each of `width` numbers that begin with those of the unknowns.
+    /// `room` is room for the operators.
     ///
     /// # Panics
     /// If `rhs` does not have [`PairSystem::size`] entries, or `lhs` not `width` for each of them.
@@ -153,6 +154,7 @@ impl PairSystem<'_> {
         knows: FirstIterateTangent,
         (lhs, width): (&mut [f64], usize),
         rhs: &mut [f64],
+        room: &mut Operators<Active>,
     ) {
         let n = self.size();
         assert_eq!(rhs.len(), n, "one entry per local unknown");
@@ -161,26 +163,28 @@ impl PairSystem<'_> {
         rhs.fill(0.0);
         if let Some(operators) = self.inert_operators(found) {
             self.visit_rows(self.geometry, &operators, &mut |row, value| rhs[row] = *value);
-            return self.add_multiplier_columns(&operators, (lhs, width));
+            return self.add_multiplier_columns(&operators, (lhs, width), room);
         }
         let unknowns = self.geometry.unknowns();
-        let mut operators = Operators::zero(self.geometry.slave_shape, self.geometry.master_shape);
+        let operators = &mut *room;
+        operators.reset(self.geometry.slave_shape, self.geometry.master_shape);
         for first in (0..unknowns).step_by(LANES) {
             if first > 0 {
                 operators.clear();
             }
             let geometry = seeded(first);
-            if knows.find_operators(&geometry, self.settings, self.points(), &mut operators).cells().is_none() {
+            if knows.find_operators(&geometry, self.settings, self.points(), operators).cells().is_none() {
                 return;
             }
             let lanes = LANES.min(unknowns - first);
-            self.visit_rows(&geometry, &operators, &mut |row, b: &Active| {
+            self.visit_rows(&geometry, operators, &mut |row, b: &Active| {
                 rhs[row] = b.value;
                 let entries = &mut lhs[row * width + first..][..lanes];
                 entries.iter_mut().zip(&b.gradient).for_each(|(entry, derivative)| *entry = -derivative);
             });
         }
-        self.add_multiplier_columns(&operators.values(), (lhs, width));
+        let values = operators.values();
+        self.add_multiplier_columns(&values, (lhs, width), room);
     }
 
     /// Points of the overlap.
@@ -204,7 +208,12 @@ impl PairSystem<'_> {
     }
 
     /// Writes the columns of the multipliers: rows are affine in them, so that operators need no derivatives.
-    fn add_multiplier_columns(&self, operators: &Operators<f64>, (lhs, width): (&mut [f64], usize)) {
+    fn add_multiplier_columns(
+        &self,
+        operators: &Operators<f64>,
+        (lhs, width): (&mut [f64], usize),
+        room: &mut Operators<Active>,
+    ) {
         let (kind, space) = (self.law.multiplier(), self.geometry.space());
         let (count, slaves, masters) = (kind.count(space), self.geometry.slave.len(), self.geometry.master.len());
         let (unknowns, all) = (self.geometry.unknowns(), count * slaves);
@@ -212,8 +221,8 @@ impl PairSystem<'_> {
             return;
         }
         let geometry = self.geometry.as_constants::<Active>();
-        let constants = operators.as_constants();
-        let pair = PairKinematics::new(self.law, &geometry, &constants, self.nodes, self.history);
+        room.take_constants(operators);
+        let pair = PairKinematics::new(self.law, &geometry, room, self.nodes, self.history);
         for first in (0..all).step_by(LANES) {
             let seeded = |j: usize| variables_from(first, count * j, self.multipliers[j], count);
             let LawForces { forces, rows } = self.evaluate(&pair, &Nodal::new(slaves, seeded));
@@ -240,21 +249,21 @@ impl PairSystem<'_> {
     }
 
     /// Visits the rows of a pair with ∂b/∂n: the derivatives by the components of the normals of its slave nodes, node by node,
-    /// some at once from a number on; nothing without overlap.
-    pub fn by_normals(&self, visit: &mut dyn FnMut(usize, usize, &[f64])) {
+    /// some at once from a number on; nothing without overlap. `operators` is room for the operators.
+    pub fn by_normals(&self, operators: &mut Operators<Active>, visit: &mut dyn FnMut(usize, usize, &[f64])) {
         let count = self.geometry.normal_components();
-        let mut operators = Operators::zero(self.geometry.slave_shape, self.geometry.master_shape);
+        operators.reset(self.geometry.slave_shape, self.geometry.master_shape);
         for first in (0..count).step_by(LANES) {
             if first > 0 {
                 operators.clear();
             }
-            let found = find_operators_by_normals(self.geometry, self.settings, self.points(), first, &mut operators);
+            let found = find_operators_by_normals(self.geometry, self.settings, self.points(), first, operators);
             if found.cells().is_none() {
                 return;
             }
             let seeded = self.geometry.seeded_by_normals(first);
             let known = LANES.min(count - first);
-            self.visit_rows(&seeded, &operators, &mut |row, b: &Dual<LANES>| visit(row, first, &b.gradient[..known]));
+            self.visit_rows(&seeded, operators, &mut |row, b: &Active| visit(row, first, &b.gradient[..known]));
         }
     }
 

@@ -17,6 +17,7 @@ use super::pairs_of_shapes::PairsOfShapes;
 use crate::interface::SlaveIndex;
 use crate::kratos::FirstIterateTangent;
 use crate::law::{ContactLaw, SlipMeasure};
+use crate::mortar::{Active, Operators};
 use crate::slave_nodes::SlaveStates;
 
 /// Pairs of two shapes under one law.
@@ -37,10 +38,17 @@ impl PairBlock {
     }
 
     /// Adds to the tangent of a pair the effect of the rotation of its nodal normals: −∂b/∂n ∂n/∂x.
-    fn add_turning(&self, at: usize, view: &StepView<'_>, system: &PairSystem<'_>, (lhs, width): (&mut [f64], usize)) {
+    fn add_turning(
+        &self,
+        at: usize,
+        view: &StepView<'_>,
+        system: &PairSystem<'_>,
+        (lhs, width): (&mut [f64], usize),
+        room: &mut Operators<Active>,
+    ) {
         let (rows, count) = (self.pairs.equations(), system.geometry.normal_components());
         let mut by_normals = vec![0.0; rows * count];
-        system.by_normals(&mut |row, first, derivatives| {
+        system.by_normals(room, &mut |row, first, derivatives| {
             let at = row * count + first;
             by_normals[at..at + derivatives.len()].copy_from_slice(derivatives);
         });
@@ -93,6 +101,7 @@ impl EntityBlock for PairBlock {
         out: &mut LocalSystems,
     ) -> Result<(), EntityError> {
         let Self { law, pairs } = self;
+        let mut room = Operators::room();
         for (slot, at) in range.enumerate() {
             if !pairs.pairs[at].overlapping {
                 continue;
@@ -118,10 +127,10 @@ impl EntityBlock for PairBlock {
                 let lhs = &mut lhs[..rows * width];
                 let knows = FirstIterateTangent::of(view, geometry.space());
                 let found = || pairs.operators_of(at, &geometry);
-                system.tangent(&found, &|first| pairs.seeded(&geometry, first), knows, (lhs, width), rhs);
+                system.tangent(&found, &|first| pairs.seeded(&geometry, first), knows, (lhs, width), rhs, &mut room);
                 let acts = nodes.iter().any(|node| node.state.is_active());
                 if acts && pairs.parameters.normal_variation.knows_nodes() {
-                    self.add_turning(at, view, &system, (lhs, width));
+                    self.add_turning(at, view, &system, (lhs, width), &mut room);
                 }
             } else {
                 system.residual(&pairs.operators_of(at, &geometry), rhs);

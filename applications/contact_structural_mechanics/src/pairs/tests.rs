@@ -82,7 +82,14 @@ fn tangent(
     let n = system.size();
     let (mut lhs, mut rhs) = (vec![0.0; n * n], vec![0.0; n]);
     let found = || operators(pair, settings);
-    system.tangent(&found, &|first| pair.seeded_from(first), FirstIterateTangent::Exact, (&mut lhs, n), &mut rhs);
+    system.tangent(
+        &found,
+        &|first| pair.seeded_from(first),
+        FirstIterateTangent::Exact,
+        (&mut lhs, n),
+        &mut rhs,
+        &mut Operators::room(),
+    );
     (lhs, rhs)
 }
 
