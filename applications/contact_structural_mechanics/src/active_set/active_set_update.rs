@@ -138,7 +138,7 @@ impl ActiveSetUpdate {
         ))
     }
 
-    /// Decides on slave nodes together by their `responses`; no change where these have no solution.
+    /// Decides on slave nodes together by their `responses`; where these have no solution, on the one that violates its condition most.
     pub(crate) fn decide_states(
         &mut self,
         part: &mut ModelPart,
@@ -149,11 +149,10 @@ impl ActiveSetUpdate {
         let rules = Rules::of(setup);
         let (mut decisions, before) = rules.decide(part, states, &mut self.released);
         let slaves = Self::decided_together(states);
-        if joint_decision::decide(rules, part, states, &slaves, responses, &mut decisions) {
-            rules.apply(part, states, &decisions, &before)
-        } else {
-            SetChange::default()
+        if !joint_decision::decide(rules, part, states, &slaves, responses, &mut decisions) {
+            joint_decision::keep_one(&mut decisions, &before);
         }
+        rules.apply(part, states, &decisions, &before)
     }
 
     /// Whether slave nodes of a formulation can be decided on together.

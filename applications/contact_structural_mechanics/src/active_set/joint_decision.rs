@@ -48,6 +48,22 @@ pub(super) fn conditions(
     slaves.iter().map(condition).collect()
 }
 
+/// Keeps one of the changes that each node would make on its own: that of the node under the largest pressure that enters contact, or
+/// else of the one under the largest tension that leaves it. Bodies without restraint would be torn by all of them at once.
+pub(super) fn keep_one(decisions: &mut [(SlaveIndex, Decision)], before: &[NodeState]) {
+    let rank = |decision: &Decision| {
+        (!decision.state.is_active(), if decision.state.is_active() { decision.pressure } else { -decision.pressure })
+    };
+    let changes = decisions.iter().enumerate().filter(|(_, (_, decision))| decision.changed);
+    let order = |a: &(bool, f64), b: &(bool, f64)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1));
+    let kept = changes.min_by(|(_, (_, a)), (_, (_, b))| order(&rank(a), &rank(b))).map(|(at, _)| at);
+    for (at, ((_, decision), &was)) in decisions.iter_mut().zip(before).enumerate() {
+        if Some(at) != kept {
+            decision.stay(was, was);
+        }
+    }
+}
+
 /// Puts the decisions that fulfil all conditions of `slaves` into `decisions`; `false` where there are none.
 pub(super) fn decide(
     rules: Rules<'_>,

@@ -380,14 +380,18 @@ impl ActiveSet for ContactInteraction {
             (self.contact.setup.settings.adaptation, self.contact.setup.settings.explicit.is_some());
         let gaps = adaptation.gaps(&self.contact.states, explicit);
         self.contact.integrate(part);
-        if iteration <= SETTLED {
+        // A body that nothing restrains yet moves on to where no pairs are.
+        let length =
+            activation::stabilization_length(part, &self.contact.states, &self.contact.pairing.slaves_by_interface());
+        let moved = self.loops.step_search.has_moved(part, &self.contact.pairing.nodes(), length);
+        if iteration <= SETTLED || moved {
             let (contact, searched) = ((&self.contact.pairing, &self.contact.states), self.contact.is_searched());
             let missed = self.loops.step_search.on_the_way(part, contact, &self.contact.setup, searched)?;
             if !missed.is_empty() {
                 self.contact.take_in(part, missed)?;
             }
         }
-        if iteration >= SETTLED {
+        if iteration >= SETTLED && !moved {
             self.contact.pairing.freeze_choices(part, &self.contact.states);
         }
         let change = self.set.update(part, &mut self.contact.states, &self.contact.setup, &mut self.contact.messages);

@@ -1,10 +1,11 @@
-//! When contact searches within a step: in its first iterations, and in converged states.
+//! When contact searches within a step: in its first iterations, where bodies move on, and in converged states.
 
 use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::OuterLoop;
 use zelus_core::model::ModelPart;
+use zelus_core::vector3::{norm, sub};
 
 use super::missed_pairs::{FoundPairs, SearchThresholds, farthest_motion, missed_pairs};
 use crate::pairing::Pairing;
@@ -22,12 +23,28 @@ pub(crate) struct StepSearch {
     /// In converged states of this step.
     searches: usize,
     warned: bool,
+    /// Places of the nodes of the interfaces at the last look on the way.
+    #[serde(skip)]
+    places: Vec<[f64; 3]>,
 }
 
 impl StepSearch {
     /// A step begins.
     pub(crate) fn begin_step(&mut self) {
         self.searches = 0;
+        self.places.clear();
+    }
+
+    /// Whether `nodes` have moved by `length` since this was true last; at first it is. Collective.
+    pub(crate) fn has_moved(&mut self, part: &ModelPart, nodes: &[u32], length: f64) -> bool {
+        let places = || nodes.iter().map(|&node| part.nodes.current[node as usize]);
+        let far = |(now, before): ([f64; 3], &[f64; 3])| norm(sub(now, *before)) >= length;
+        let moved = self.places.len() != nodes.len() || places().zip(&self.places).any(far);
+        let moved = part.ranks.any(moved);
+        if moved {
+            self.places = places().collect();
+        }
+        moved
     }
 
     /// Facets that should be pairs now and are not; `searched` says whether the step began with a search.
@@ -52,7 +69,7 @@ impl StepSearch {
         missed_pairs(part, (pairing, states), setup, wanted)
     }
 
-    /// In the first iterations: pairs that the motion has made, so that the iteration need not be repeated for them at its end.
+    /// In the first iterations, and where bodies move on: pairs that the motion has made, so that the iteration need not be repeated for them at its end.
     ///
     /// # Errors
     /// Errors of making blocks.

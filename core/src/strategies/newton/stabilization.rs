@@ -3,7 +3,7 @@
 //! Where the tangent K of a static step is singular and no further contact can be activated, the iteration goes on with K + A (a
 //! Levenberg–Marquardt method), A being diagonal over the displacements u of each body b:
 //!
-//! A_n = min(Σ_b |r|, F_b) / (N_b d) + ε |K_nn|,
+//! A_n = min(Σ_b |r|, F_b) / (N_b d) + min(ε |K_nn|, 0.05 F_b / (N_b d)),
 //!
 //! with the residual r, the load F_b of the body (its resultant, or the sum of |f| over the forces f of its conditions where that is
 //! more), the number N_b of these unknowns, a length d and ε = 1e-8. A body that nothing restrains so moves
@@ -26,6 +26,10 @@ pub(crate) const ONLY_CONTACT_RESTRAINS: StepMark = StepMark::new("ONLY_CONTACT_
 
 /// Share of the diagonal entries that is added to them in any case: motions without load stay where they are.
 const LEAST: f64 = 1e-8;
+/// Share of the first amount that this exceeds only where the amount is round-off: small loads move stiff bodies, too.
+const SLOWING: f64 = 0.05;
+/// Share of the diagonal entries that is round-off.
+const ROUND_OFF: f64 = 1e-13;
 
 /// Iterations in which a body moves on freely before nothing is taken to stop it, and relative change of the residual meanwhile.
 const FREE: usize = 20;
@@ -40,8 +44,8 @@ pub(super) struct Stabilization {
     length: f64,
     /// Load of each body; none before the first solve.
     loads: Vec<f64>,
-    /// Amount for the diagonal entry of each unknown; `None` where it is no displacement of a body.
-    amounts: Vec<Option<f64>>,
+    /// Amount for the diagonal entry of each unknown, and that under the whole load; `None` where it is no displacement of a body.
+    amounts: Vec<Option<[f64; 2]>>,
 }
 
 impl NewtonRaphson {
@@ -129,8 +133,8 @@ impl NewtonRaphson {
         }
         part.ranks.sum(sums.as_flattened_mut());
         let amount = |body: usize| {
-            let [residual, count] = sums[body];
-            own.loads[body].min(residual) / (count.max(1.0) * length)
+            let ([residual, count], load) = (sums[body], own.loads[body]);
+            [load.min(residual), load].map(|force| force / (count.max(1.0) * length))
         };
         own.amounts =
             body_of.iter().enumerate().map(|(n, body)| body.filter(|_| equations.is_free(n)).map(amount)).collect();
@@ -140,7 +144,11 @@ impl NewtonRaphson {
 
     /// Adds the amounts found last to the tangent.
     pub(super) fn add(&mut self, own: &Stabilization) {
-        self.assembler.add_to_diagonal(&|n, entry| own.amounts[n].map_or(0.0, |amount| amount + LEAST * entry));
+        let added = |[amount, whole]: [f64; 2], entry: f64| {
+            let most = if whole > 0.0 { (SLOWING * whole).max(ROUND_OFF * entry) } else { f64::INFINITY };
+            amount + most.min(LEAST * entry)
+        };
+        self.assembler.add_to_diagonal(&|n, entry| own.amounts[n].map_or(0.0, |amounts| added(amounts, entry)));
     }
 }
 
