@@ -65,7 +65,7 @@ impl Builtin {
                     Ok(())
                 }
                 "ExecuteBeforeSolutionLoop" => process.before_loop(model),
-                "ExecuteInitializeSolutionStep" => process.begin_step(model),
+                "ExecuteInitializeSolutionStep" => process.begin_step(model).and_then(|()| process.constrain(model)),
                 "ExecuteFinalizeSolutionStep" => process.end_step(model, system),
                 "ExecuteBeforeOutputStep" => process.before_output(model, system),
                 "PrintOutput" => process.print_output(model, system),

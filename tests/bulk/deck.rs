@@ -116,6 +116,11 @@ impl<'a> Deck<'a> {
         self
     }
 
+    /// A part with nodes alone; its name below the root part.
+    pub fn nodes(&mut self, wanted: impl Fn(Vec3) -> bool) -> String {
+        self.part(self.grid.nodes_where(wanted))
+    }
+
     /// Puts conditions of a kind on facets and gives them a scalar.
     pub fn scalar_load(
         &mut self,
@@ -212,6 +217,25 @@ impl<'a> Deck<'a> {
 
     /// Runs the deck; returns the result, and the files on disk.
     pub fn attempt(&self) -> (zelus_core::Result<()>, Ran) {
+        let folder = self.write();
+        let path = folder.path().join("ProjectParameters.json");
+        let mut simulation = Simulation::open(&path, &RunOptions::default()).expect("a deck");
+        let result = simulation.run(&mut Silent);
+        let text = std::fs::read_to_string(folder.path().join("results.json"));
+        let text = text.unwrap_or_else(|_| panic!("{}: no results: {result:?}", self.element));
+        (result, Ran { json: serde_json::from_str(&text).expect("JSON"), report: simulation.into_report() })
+    }
+
+    /// Problem of a deck that must not pass its check.
+    pub fn problem(&self) -> String {
+        let folder = self.write();
+        let path = folder.path().join("ProjectParameters.json");
+        let checked = Simulation::open(&path, &RunOptions::default()).and_then(|mut run| run.check(&mut Silent));
+        checked.expect_err("a problem").to_string()
+    }
+
+    /// The files of the deck.
+    fn write(&self) -> tempfile::TempDir {
         let folder = tempfile::tempdir().expect("a scratch folder");
         let mut processes = self.processes.clone();
         processes.push(json!({
@@ -227,11 +251,7 @@ impl<'a> Deck<'a> {
         write("ProjectParameters.json", deck.to_string());
         write("materials.json", self.material.to_string());
         write("mesh.mdpa", self.mesh());
-        let path = folder.path().join("ProjectParameters.json");
-        let mut simulation = Simulation::open(&path, &RunOptions::default()).expect("a deck");
-        let result = simulation.run(&mut Silent);
-        let text = std::fs::read_to_string(folder.path().join("results.json")).expect("results");
-        (result, Ran { json: serde_json::from_str(&text).expect("JSON"), report: simulation.into_report() })
+        folder
     }
 }
 

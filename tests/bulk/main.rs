@@ -10,3 +10,4 @@ mod grid;
 mod large_strain;
 mod plastic;
 mod springs;
+mod supports;

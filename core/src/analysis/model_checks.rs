@@ -1,13 +1,18 @@
 //! Whether a model says one thing once: entities listed twice, unknowns that are prescribed two values, loads that are given twice.
 
+use std::collections::BTreeMap;
+
 use rustc_hash::{FxHashMap, FxHashSet};
 use zelus_linear_algebra::parallel;
 
 use crate::assembly::{DofTable, Equations};
 use crate::diagnostics::{Diagnostic, Report, Result, counted};
 use crate::geometry::Shape;
-use crate::model::{EntityRole, EntityTable, ModelPart, Owner, ScalarVariable, SubPart, mesh_box};
-use crate::processes::{Load, LoadCarrier, Prescription, Process, is_body_load};
+use crate::model::{
+    EntityRole, EntityTable, ModelPart, NodeUnknown, Owner, ScalarVariable, SubPart, SupportConflict,
+    SupportedComponent, mesh_box, reduce_supports,
+};
+use crate::processes::{DirectionalPrescription, Load, LoadCarrier, Prescription, Process, conflict, is_body_load};
 use crate::vector3::norm;
 
 /// Difference of two values that are the same, as a share of the larger.
@@ -187,7 +192,9 @@ pub(super) fn check_constraints(
     processes: &[Box<dyn Process>],
     time: f64,
 ) -> Result<()> {
-    if part.constraints.is_empty() {
+    let along: Vec<DirectionalPrescription> =
+        processes.iter().filter_map(|process| process.prescribes_along(part, time)).collect();
+    if part.constraints.is_empty() && along.is_empty() {
         return Ok(());
     }
     let mut known: FxHashMap<(ScalarVariable, u32), Option<f64>> = FxHashMap::default();
@@ -195,7 +202,49 @@ pub(super) fn check_constraints(
         let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
         known.extend(prescription.values.iter().map(|&(node, value)| ((prescription.variable, node), finite(value))));
     }
-    Equations::with_supports(dofs, part, &|variable, node| known.get(&(variable, node)).copied()).map(|_| ())
+    Equations::with_supports(dofs, part, &|variable, node| known.get(&(variable, node)).copied())?;
+    check_directions(part, &along, &known)
+}
+
+/// Checks supports along directions against each other, and against prescribed components and constraints of the same nodes.
+fn check_directions(
+    part: &ModelPart,
+    along: &[DirectionalPrescription],
+    known: &FxHashMap<(ScalarVariable, u32), Option<f64>>,
+) -> Result<()> {
+    if along.is_empty() {
+        return Ok(());
+    }
+    let dimension = part.info.domain_size;
+    let following = part.constraints.iter().filter(|own| own.active && own.set.is_none() && own.support.is_none());
+    let following: FxHashSet<NodeUnknown> = following.map(|constraint| constraint.slave).collect();
+    // Process, direction and value of each equation, by node.
+    let mut of_nodes: BTreeMap<(u32, &'static str), Vec<(usize, [f64; 3], f64)>> = BTreeMap::new();
+    for (process, own) in along.iter().enumerate() {
+        for &(node, direction, value) in &own.values {
+            of_nodes.entry((node, own.column)).or_default().push((process, direction, value));
+        }
+    }
+    for ((node, column), equations) in of_nodes {
+        let role = |c: usize| {
+            let variable = ScalarVariable { column, component: Some(c as u8) };
+            let by_mesh = || part.nodes.is_fixed(variable, node).then_some(None);
+            match known.get(&(variable, node)).copied().or_else(by_mesh) {
+                _ if following.contains(&(node, variable)) => SupportedComponent::Follows,
+                Some(value) => SupportedComponent::Prescribed(value),
+                None => SupportedComponent::Free,
+            }
+        };
+        let rows: Vec<_> = equations.iter().map(|&(_, direction, value)| (direction, Some(value))).collect();
+        if let Err(why) = reduce_supports(&rows, std::array::from_fn(role), dimension) {
+            let (SupportConflict::Contradiction(at, _) | SupportConflict::Constrained(at)) = why;
+            let (process, direction, _) = equations[at];
+            let DirectionalPrescription { by, place, .. } = &along[process];
+            let problem = conflict(by, part.nodes.ids[node as usize], direction, dimension, &why);
+            return Err(problem.at(place.clone()).into());
+        }
+    }
+    Ok(())
 }
 
 /// Warns of loads that a later process gives in place of those of an earlier one, where both act at once; collective.

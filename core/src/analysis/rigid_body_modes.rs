@@ -9,7 +9,7 @@ use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::entities::{Join, LocalSystems, Request, Tangent};
 use crate::model::{ModelPart, NumberedBodies, Rates, ScalarVariable};
-use crate::processes::Prescription;
+use crate::processes::{DirectionalPrescription, Prescription};
 use crate::strategies::body_in_words;
 use crate::vector3::{add, cross, dot, norm, scale, sub};
 
@@ -45,6 +45,7 @@ pub(super) fn report_restraints(
     part: &ModelPart,
     system: &System,
     prescribed: &[Prescription],
+    along: &[DirectionalPrescription],
     problems: &mut Report,
 ) -> bool {
     let Some(column) = Rates::moving(&part.nodes.history) else { return false };
@@ -60,6 +61,7 @@ pub(super) fn report_restraints(
     let mut rows = Rows { gram: DMatrix::zeros(bodies.motions.len(), bodies.motions.len()) };
     bodies.drop_immobile(&mut rows);
     bodies.support(column, prescribed, &mut rows);
+    bodies.support_along(column, along, &mut rows);
     bodies.elements_on_ground(system, &mut rows);
     let tied = |join: &&Join| join.normal.is_none();
     joins.iter().filter(tied).for_each(|join| rows.join(&bodies, join, true));
@@ -218,6 +220,16 @@ impl<'a> Bodies<'a> {
             let masters = own.masters.iter().map(|&((node, variable), weight)| (node, variable.offset(), -weight));
             let terms: Vec<_> = std::iter::once((own.slave.0, own.slave.1.offset(), 1.0)).chain(masters).collect();
             add(&terms);
+        }
+    }
+
+    /// Rows of supports along directions.
+    fn support_along(&self, column: &'static str, along: &[DirectionalPrescription], rows: &mut Rows) {
+        let own = along.iter().filter(|own| own.column == column);
+        for &(node, direction, _) in own.flat_map(|own| &own.values) {
+            let mut row = vec![0.0; self.motions.len()];
+            self.row(node, direction, 1.0, &mut row);
+            rows.add(&row);
         }
     }
 

@@ -13,7 +13,7 @@ use zelus_linear_algebra::{Csr, Layout, parallel};
 use super::dof_table::{DofTable, NONE};
 use super::rows::{ROWS, fill_rows, starts};
 use crate::diagnostics::{Diagnostic, Result};
-use crate::model::{MasterSlaveConstraint, ModelPart, ScalarVariable};
+use crate::model::{MasterSlaveConstraint, ModelPart, Owner, ScalarVariable};
 
 /// Role of an unknown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -36,11 +36,20 @@ struct MasterTerm {
 
 /// A fixed unknown that a slave leans on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct FixedMaster {
+struct FixedMaster {
     fixed: u32,
     slave: u32,
     /// Share of the slave's force.
     force: f64,
+}
+
+/// Force of a support along a direction on an unknown that it does not eliminate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct GroundForce {
+    unknown: u32,
+    slave: u32,
+    /// Share of the support's force at the slave, with the opposite sign.
+    weight: f64,
 }
 
 /// The map between unknowns and equations.
@@ -76,7 +85,12 @@ pub struct Equations {
     symmetric: bool,
     /// Contributions of constraints to fixed unknowns.
     #[serde(skip)]
-    pub(super) leaning: Vec<FixedMaster>,
+    leaning: Vec<FixedMaster>,
+    /// Unknowns that supports along directions eliminate, ascending, and their forces on others.
+    #[serde(skip)]
+    supported_slaves: Vec<u32>,
+    #[serde(skip)]
+    ground: Vec<GroundForce>,
     /// Meaning of the equations.
     #[serde(skip)]
     pub layout: Layout,
@@ -135,10 +149,12 @@ impl Equations {
             roles[number] = DofRole::Free(free.len() as u32);
             free.push(number as u32);
         }
-        let mut leaning = Vec::new();
+        let (mut leaning, mut ground) = (Vec::new(), Vec::new());
+        let is_support = |number: u32| slaves.get(&number).is_some_and(|constraint| constraint.support.is_some());
+        let supported_slaves: Vec<u32> = slaves.keys().copied().filter(|&number| is_support(number)).collect();
         for (&number, constraint) in &slaves {
             let mut terms = BTreeMap::new();
-            let constant = follow(number, [1.0; 2], &slaves, dofs, part, 0, &mut terms)?;
+            let constant = follow(number, [1.0; 2], &slaves, dofs, part, 0, &|_| false, &mut terms)?;
             let (node, variable) = constraint.slave;
             if let Some(value) = support(variable, node).filter(|_| constraint.set.is_none()) {
                 let support_of =
@@ -149,13 +165,33 @@ impl Equations {
                 }
             }
             let mut follows = Vec::with_capacity(terms.len());
+            let mut fixed = BTreeMap::new();
             for (master, [weight, force]) in terms {
                 match roles[master as usize] {
                     DofRole::Free(equation) => follows.push(MasterTerm { equation, weight, force }),
-                    _ => leaning.push(FixedMaster { fixed: master, slave: number, force }),
+                    _ => drop(fixed.insert(master, [weight, force])),
                 }
             }
             roles[number as usize] = DofRole::Slave(follows);
+            if constraint.support.is_some() {
+                // A support along a direction bears its force itself.
+                let others = constraint.masters.iter().filter_map(|&((node, variable), weight)| {
+                    Some((dofs.number_of(variable, Owner::Node(node))?, weight))
+                });
+                let others = others
+                    .filter(|&(unknown, _)| roles[unknown as usize] != DofRole::Fixed || slaves.contains_key(&unknown));
+                ground.extend(others.map(|(unknown, weight)| GroundForce { unknown, slave: number, weight }));
+                continue;
+            }
+            if !supported_slaves.is_empty() {
+                fixed.clear();
+                follow(number, [1.0; 2], &slaves, dofs, part, 0, &is_support, &mut fixed)?;
+                fixed.retain(|&master, _| {
+                    is_support(master)
+                        || support(dofs.dofs()[master as usize].variable, dofs.dofs()[master as usize].node).is_some()
+                });
+            }
+            leaning.extend(fixed.into_iter().map(|(fixed, [_, force])| FixedMaster { fixed, slave: number, force }));
         }
         let layout = Layout {
             node: parallel::map(free.len(), ROWS, |at| dofs.dofs()[free[at] as usize].node),
@@ -163,12 +199,17 @@ impl Equations {
             ..Layout::default()
         };
         let symmetric = slaves.values().all(|constraint| constraint.forces.is_none());
-        Ok(Self { has_slaves: !slaves.is_empty(), symmetric, roles, free, leaning, layout })
+        Ok(Self { has_slaves: !slaves.is_empty(), symmetric, roles, free, leaning, supported_slaves, ground, layout })
     }
 
     /// All that a saved run holds of them: enough to tell whether others are the same.
     pub(super) fn roles_only(&self) -> Self {
         Self { roles: self.roles.clone(), ..Self::default() }
+    }
+
+    /// Takes up the forces that slaves of the same equations pass on.
+    pub(super) fn take_forces(&mut self, other: Self) {
+        (self.leaning, self.ground, self.supported_slaves) = (other.leaning, other.ground, other.supported_slaves);
     }
 
     /// Whether both lead to the same equations.
@@ -239,7 +280,22 @@ impl Equations {
         Cow::Owned(out)
     }
 
-    /// The residual with the forces that slaves hand on to fixed unknowns: there, minus the force of the supports.
+    /// Minus the residual with the forces that slaves hand on: the forces of the supports and their constraints at all unknowns.
+    pub fn reactions(&self, full: &[f64]) -> Vec<f64> {
+        self.supported(full).iter().map(|r| -r).collect()
+    }
+
+    /// The forces of the supports alone, those along directions included; zero at unknowns without support.
+    pub fn forces_of_supports(&self, full: &[f64]) -> Vec<f64> {
+        let supported = self.supported(full);
+        let mut out: Vec<f64> =
+            supported.iter().zip(&self.roles).map(|(r, role)| if *role == DofRole::Fixed { -r } else { 0.0 }).collect();
+        self.supported_slaves.iter().for_each(|&slave| out[slave as usize] = -supported[slave as usize]);
+        self.ground.iter().for_each(|of| out[of.unknown as usize] += of.weight * supported[of.slave as usize]);
+        out
+    }
+
+    /// The residual with the forces that slaves hand on to supported unknowns: there, minus the force of the supports.
     pub fn supported<'r>(&self, full: &'r [f64]) -> Cow<'r, [f64]> {
         if self.leaning.is_empty() {
             return Cow::Borrowed(full);
@@ -345,7 +401,9 @@ fn contradiction(
     differs.then(|| format!("which gives it {follows}, and a support prescribes {value}"))
 }
 
-/// Adds the unknowns that a slave follows through all constraints to `terms`; the sum of their constants.
+/// Adds the unknowns that a slave follows through all constraints to `terms`, slaves at which it `ends` included; the sum of their
+/// constants.
+#[expect(clippy::too_many_arguments, reason = "the path of a recursion")]
 fn follow(
     number: u32,
     shares: [f64; 2],
@@ -353,6 +411,7 @@ fn follow(
     dofs: &DofTable,
     part: &ModelPart,
     depth: usize,
+    ends: &dyn Fn(u32) -> bool,
     terms: &mut BTreeMap<u32, [f64; 2]>,
 ) -> Result<f64> {
     let constraint = slaves[&number];
@@ -374,8 +433,8 @@ fn follow(
                 ),
             )
         })?;
-        if slaves.contains_key(&master) {
-            constant += follow(master, shares, slaves, dofs, part, depth + 1, terms)?;
+        if slaves.contains_key(&master) && !ends(master) {
+            constant += follow(master, shares, slaves, dofs, part, depth + 1, ends, terms)?;
         } else {
             let sums = terms.entry(master).or_insert([0.0; 2]);
             (0..2).for_each(|at| sums[at] += shares[at]);
@@ -426,8 +485,7 @@ mod tests {
         dofs.number(&part, &[DofOwners::of_nodes(x, vec![0, 1, 2])], &[]);
         part.nodes.set_fixed(x, fixed, true);
         let masters = vec![((0, x), 0.5), ((1, x), 0.5)];
-        let constraint =
-            MasterSlaveConstraint { id: 1, slave: (2, x), masters, forces, constant: 0.0, active: true, set: None };
+        let constraint = MasterSlaveConstraint { id: 1, forces, ..MasterSlaveConstraint::new((2, x), masters) };
         part.constraints.push(constraint);
         Equations::new(&dofs, &part).unwrap()
     }

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::directional_support::DirectionalSupport;
 use super::variable::ScalarVariable;
 
 /// An unknown of a node.
@@ -25,11 +26,13 @@ pub struct MasterSlaveConstraint {
     pub active: bool,
     /// The set of slave nodes that own its unknowns, each at the mesh node named; `None` for unknowns of mesh nodes.
     pub set: Option<String>,
+    /// The support along a direction from which it comes: its force acts between the node and the ground.
+    pub support: Option<DirectionalSupport>,
 }
 
 impl MasterSlaveConstraint {
     /// A constraint that holds, without a constant, and not yet of a part: its id is 0.
     pub fn new(slave: NodeUnknown, masters: Vec<(NodeUnknown, f64)>) -> Self {
-        Self { id: 0, slave, masters, forces: None, constant: 0.0, active: true, set: None }
+        Self { id: 0, slave, masters, forces: None, constant: 0.0, active: true, set: None, support: None }
     }
 }

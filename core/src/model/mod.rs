@@ -5,6 +5,7 @@
 //! run in the order in which the reference program loops over ids.
 
 mod connected_bodies;
+mod directional_support;
 mod constraint;
 mod entity_kind;
 mod entity_table;
@@ -46,6 +47,7 @@ use serde::{Deserialize, Serialize};
 
 pub use connected_bodies::bodies_of_nodes;
 pub use constraint::{MasterSlaveConstraint, NodeUnknown};
+pub use directional_support::{DirectionalSupport, SupportConflict, SupportedComponent, reduce_supports};
 pub use entity_kind::{EntityKind, EntityRole, KindFinder};
 pub use entity_table::EntityTable;
 pub use fields::{Field, Fields};

@@ -18,6 +18,7 @@ mod assign_scalar_input_to_entities_process;
 mod assign_scalar_variable_process;
 mod assign_vector_variable_process;
 mod assign_vector_by_direction_process;
+mod directional_supports;
 mod face_direction;
 mod fix_variable_process;
 mod assign_scalar_variable_to_entities_process;
@@ -32,12 +33,14 @@ mod tests;
 
 pub use assign_to_entities::{AssignToEntities, Container, EntityComponent};
 pub use assign_to_nodes::{AssignToNodes, NodalComponent};
+pub use directional_supports::DirectionalSupports;
+pub(crate) use directional_supports::conflict;
 pub use local_axes::LocalAxes;
 pub use output::{
     OutputFormat, OutputFormatEntry, OutputFormatFactory, OutputFrame, SurfaceFrame, largest_results, usual_results,
 };
 pub(crate) use prescription::is_body_load;
-pub use prescription::{Load, LoadCarrier, Prescription};
+pub use prescription::{DirectionalPrescription, Load, LoadCarrier, Prescription};
 pub use process::{NamedSurface, Process, ProcessEntry, ProcessFactory, ProcessRequest};
 pub use scalar_value::ScalarValue;
 pub(crate) use scalar_value::{tables_of, time_tables_of};

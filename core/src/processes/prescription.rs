@@ -17,6 +17,19 @@ pub struct Prescription {
     pub values: Vec<(u32, Option<f64>)>,
 }
 
+/// Values of a vector along directions, which a process prescribes at a time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DirectionalPrescription {
+    /// The process and its part, for messages.
+    pub by: String,
+    /// Where the deck names the part.
+    pub place: Place,
+    /// The vector.
+    pub column: &'static str,
+    /// Nodes (index), unit vectors and values.
+    pub values: Vec<(u32, [f64; 3], f64)>,
+}
+
 /// Carrier of the loads of a process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LoadCarrier {

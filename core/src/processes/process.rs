@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use zelus_linear_algebra::State;
 
-use super::prescription::{Load, Prescription};
+use super::prescription::{DirectionalPrescription, Load, Prescription};
 use super::time_table::TimeTable;
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report, Result};
@@ -88,6 +88,11 @@ pub trait Process: Send {
         Vec::new()
     }
 
+    /// Directions, other than axes, along which it prescribes the nodes of a root part at a time, with their values.
+    fn prescribes_along(&self, _part: &ModelPart, _time: f64) -> Option<DirectionalPrescription> {
+        None
+    }
+
     /// Whether it may load or move that root part at any time.
     fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
         true
@@ -119,6 +124,14 @@ pub trait Process: Send {
     /// # Errors
     /// As [`Process::initialize`].
     fn begin_step(&mut self, _model: &mut Model) -> Result<()> {
+        Ok(())
+    }
+
+    /// All processes have prescribed the values of the step: constraints that depend on them.
+    ///
+    /// # Errors
+    /// As [`Process::initialize`].
+    fn constrain(&mut self, _model: &mut Model) -> Result<()> {
         Ok(())
     }
 

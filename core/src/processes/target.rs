@@ -48,12 +48,12 @@ impl Target {
     }
 
     /// Whether its part lies in that root part.
-    pub(super) fn is_of(&self, root: &ModelPart) -> bool {
+    pub fn is_of(&self, root: &ModelPart) -> bool {
         self.path.split('.').next() == Some(root.tree.name.as_str())
     }
 
     /// The selection in the tree of its root part.
-    pub(super) fn selection<'t>(&self, tree: &'t SubPart) -> Result<&'t SubPart> {
+    pub fn selection<'t>(&self, tree: &'t SubPart) -> Result<&'t SubPart> {
         let gone = || Diagnostic::error("unknown-model-part", format!("the model part {:?} is gone", self.path));
         tree.find(self.below_root()).ok_or_else(|| gone().at(self.place.clone()).into())
     }
@@ -84,7 +84,7 @@ impl Target {
     }
 
     /// An error for a value that is not finite.
-    pub(super) fn not_finite(
+    pub fn not_finite(
         &self,
         variable: ScalarVariable,
         value: f64,

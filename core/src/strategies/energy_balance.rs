@@ -224,9 +224,7 @@ fn forces(
     let others = loads.iter().zip(&interactions).zip(&inertia);
     let elements = residual.iter().zip(others).map(|(r, ((load, push), inertia))| r - load - push - inertia).collect();
     let equations = assembler.equations();
-    let supported = equations.supported(residual);
-    let held = |(n, force): (usize, &f64)| if equations.is_fixed(n) { -force } else { 0.0 };
-    let reactions: Vec<f64> = supported.iter().enumerate().map(held).collect();
+    let reactions = equations.forces_of_supports(residual);
     if equations.has_slaves() {
         // The residual that supports leave is the force of constraints.
         let left = residual.iter().zip(&reactions).map(|(r, reaction)| r + reaction);

@@ -12,14 +12,11 @@ register! { ConstraintEntry "MeanConstraint",
             return Err("there is no mean of no nodes".to_owned());
         }
         let share = 1.0 / row.masters.len() as f64;
+        let masters = row.masters.iter().map(|&node| ((node, row.variables[0]), share));
         Ok(vec![MasterSlaveConstraint {
             id: row.id,
-            slave: (row.slave, row.variables[0]),
-            masters: row.masters.iter().map(|&node| ((node, row.variables[0]), share)).collect(),
-            forces: None,
             constant: row.constant,
-            active: true,
-            set: None,
+            ..MasterSlaveConstraint::new((row.slave, row.variables[0]), masters.collect())
         }])
     },
 }

@@ -189,14 +189,16 @@ impl<'a> Rules<'a> {
             Multiplier::None | Multiplier::Body => penalty,
         };
         let whole = formulation.multiplier.vector(&part.slave_nodes, owner, normal);
-        let driven = constraints.contains(&MultiplierConstraint::ConstantInStick);
+        let driven = constraints.rules.contains(&MultiplierConstraint::ConstantInStick);
         let multiplier = match formulation.multiplier {
             // No multiplier restrains motion that supports prescribe: the slip itself gives the traction that would.
             Multiplier::Vector(_) if driven => {
-                let along = |c: usize| constraints[c] == MultiplierConstraint::ConstantInStick && norm(slip) > 0.0;
+                let rules = constraints.rules;
+                let along = |c: usize| rules[c] == MultiplierConstraint::ConstantInStick && norm(slip) > 0.0;
                 let normal_part = scale(normal, dot(whole, normal));
                 let kept = sub(whole, normal_part);
-                let free = std::array::from_fn(|c| if along(c) { 0.0 } else { kept[c] });
+                let kept = constraints.axes.components(kept);
+                let free = constraints.axes.vector(std::array::from_fn(|c| if along(c) { 0.0 } else { kept[c] }));
                 add(add(normal_part, free), scale(slip, stiffness / parameters.scale_factor))
             }
             // A sliding node slides along the directions that are free.

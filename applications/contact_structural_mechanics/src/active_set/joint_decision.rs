@@ -11,17 +11,15 @@ use zelus_core::vector3::{dot, scale};
 
 use super::decision::Rules;
 use crate::interface::SlaveIndex;
+use crate::law::NodeState;
 use crate::law::rules::{self, Decision, SlaveNumbers};
-use crate::law::{MultiplierConstraint, NodeState};
 use crate::pairs::Multiplier;
 use crate::slave_nodes::{SlaveState, SlaveStates};
 
 /// The slave nodes that are decided on together: all that face a master and that no support constrains.
 pub(super) fn slave_nodes(states: &SlaveStates) -> Vec<SlaveIndex> {
     let is_free = |state: &SlaveState| {
-        !state.kinematics.isolated
-            && state.kinematics.area > 0.0
-            && state.law.constraints == [MultiplierConstraint::Free; 3]
+        !state.kinematics.isolated && state.kinematics.area > 0.0 && state.law.constraints.are_none()
     };
     states.iter().filter(|(_, state)| is_free(state)).map(|(slave, _)| slave).collect()
 }

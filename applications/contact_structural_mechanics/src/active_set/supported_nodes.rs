@@ -12,9 +12,11 @@ use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
-use crate::interface::{Facet, Fixed, Interface, SlaveIndex, check_nodes, fixed_components, symmetry_planes};
-use crate::law::MultiplierConstraint;
+use crate::interface::{
+    Facet, Fixed, FixedDirections, Interface, SlaveIndex, check_nodes, fixed_directions, symmetry_planes,
+};
 use crate::law::constrained_multiplier::free_normal;
+use crate::law::{MultiplierConstraint, MultiplierConstraints, SupportAxes};
 use crate::mortar::MOST_NODES;
 use crate::pairs::{Formulation, Multiplier};
 use crate::slave_nodes::SlaveStates;
@@ -31,8 +33,8 @@ const SAME_MOTION: f64 = 1e-9;
 /// Nodes that supports hold, and whether they have been reported.
 #[derive(Clone, Default, Serialize, Deserialize)]
 pub(crate) struct SupportedNodes {
-    fixed: BTreeMap<u32, Fixed>,
-    planes: BTreeMap<u32, Fixed>,
+    fixed: BTreeMap<u32, FixedDirections>,
+    planes: BTreeMap<u32, FixedDirections>,
     said: bool,
 }
 
@@ -50,12 +52,24 @@ pub(crate) struct FacetsOfPair<'a> {
 /// A slave node that supports hold together with the opposite master.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SupportedNode {
-    /// Components in which both sides are fixed.
+    /// Axes of the node's supports.
+    pub axes: SupportAxes,
+    /// Components along them in which both sides are fixed.
     pub components: Fixed,
     /// Whether supports move both sides apart in one of them.
     pub moves: bool,
     /// Whether the supports are planes of symmetry.
     pub symmetric: bool,
+}
+
+impl SupportedNode {
+    /// Whether both sides are fixed along an axis.
+    pub(crate) fn fixes(&self, axes: SupportAxes, c: usize) -> bool {
+        if self.axes == axes {
+            return self.components[c];
+        }
+        FixedDirections { axes: self.axes, fixed: self.components }.holds(axes.0[c])
+    }
 }
 
 impl SupportedNodes {
@@ -73,20 +87,20 @@ impl SupportedNodes {
         mapper.node_map(&mut self.planes);
     }
 
-    /// Step start: finds the fixed components, and the planes of symmetry among them.
+    /// Step start: finds the fixed directions, and the planes of symmetry among them.
     pub(crate) fn begin_step(&mut self, part: &ModelPart, interfaces: &[Interface]) {
-        self.fixed = fixed_components(part, interfaces);
+        self.fixed = fixed_directions(part, interfaces);
         self.planes = symmetry_planes(part, interfaces, &self.fixed);
     }
 
-    /// Components that the normals of nodes on planes of symmetry lack.
-    pub(crate) fn planes(&self) -> &BTreeMap<u32, Fixed> {
+    /// Directions that the normals of nodes on planes of symmetry lack.
+    pub(crate) fn planes(&self) -> &BTreeMap<u32, FixedDirections> {
         &self.planes
     }
 
-    /// Whether a component of an interface node is fixed.
-    pub(crate) fn fixes(&self, node: u32, component: usize) -> bool {
-        self.fixed.get(&node).is_some_and(|fixed| fixed[component])
+    /// Whether an interface node is fixed along a unit vector.
+    pub(crate) fn fixes(&self, node: u32, direction: [f64; 3]) -> bool {
+        self.fixed.get(&node).is_some_and(|own| own.holds(direction))
     }
 
     /// The supported slave nodes of these pairs; `normal` is that of a slave node.
@@ -126,7 +140,8 @@ impl SupportedNodes {
     fn supported_node(&self, part: &ModelPart, node: u32, master: &Facet, shares: &[f64]) -> SupportedNode {
         let own = self.fixed[&node];
         let weights = || master.nodes.iter().zip(shares).filter(|(_, share)| **share > NO_SHARE);
-        let components = std::array::from_fn(|c| own[c] && weights().all(|(&faced, _)| self.fixes(faced, c)));
+        let faced_too = |c: usize| weights().all(|(&faced, _)| self.fixes(faced, own.axes.0[c]));
+        let components = std::array::from_fn(|c| own.fixed[c] && faced_too(c));
         let field = part.nodes.history.get(DISPLACEMENT.name());
         let motion = |n: u32| {
             field.map_or([0.0; 3], |u| sub(u.vector(0, n as usize), u.vector(1.min(u.levels.len() - 1), n as usize)))
@@ -134,8 +149,9 @@ impl SupportedNodes {
         let total: f64 = weights().map(|(_, share)| share).sum();
         let faced = weights().fold([0.0; 3], |sum, (&n, share)| add(sum, scale(motion(n), share / total)));
         let (apart, size) = (sub(motion(node), faced), norm(motion(node)).max(norm(faced)));
-        let moves = |c: usize| apart[c].abs() > SAME_MOTION * size;
+        let moves = |c: usize| own.axes.component(c, apart).abs() > SAME_MOTION * size;
         SupportedNode {
+            axes: own.axes,
             components,
             moves: (0..3).any(|c| components[c] && moves(c)),
             symmetric: self.planes.contains_key(&node),
@@ -150,14 +166,14 @@ impl SupportedNodes {
         formulation: &Formulation,
         pairs: impl Iterator<Item = FacetsOfPair<'a>> + Clone,
     ) -> Option<Diagnostic> {
-        states.for_all(|state| state.law.constraints = [MultiplierConstraint::Free; 3]);
+        states.for_all(|state| state.law.constraints = MultiplierConstraints::default());
         let supported = if formulation.multiplier.is_unknown() {
             self.nodes(part, &|slave| states[slave].kinematics.normal, pairs.clone())
         } else {
             BTreeMap::new()
         };
         let followed = followed(&supported, pairs.clone().map(|pair| pair.slaves));
-        let resting = self.resting(pairs);
+        let resting = self.resting(&supported, pairs);
         let mut dropped = BTreeMap::new();
         for (&node, own) in &supported {
             let normal = states[node].kinematics.normal;
@@ -169,32 +185,39 @@ impl SupportedNodes {
                 () if resting[&node][c] => MultiplierConstraint::Constant,
                 () => MultiplierConstraint::Free,
             };
-            let rules: [MultiplierConstraint; 3] = std::array::from_fn(rule);
-            let constrained_normal = free_normal(normal, rules) == [0.0; 3] && rules.iter().any(|rule| rule.is_still());
-            let rules = match formulation.multiplier {
-                Multiplier::Vector(_) if formulation.frictional() || constrained_normal => rules,
+            let whole = MultiplierConstraints { rules: std::array::from_fn(rule), axes: own.axes };
+            let constrained_normal = free_normal(normal, whole) == [0.0; 3] && whole.any_still();
+            let constraints = match formulation.multiplier {
+                Multiplier::Vector(_) if formulation.frictional() || constrained_normal => whole,
                 Multiplier::Scalar(_) if constrained_normal => {
                     // Along the normal alone.
+                    let normal = own.axes.components(normal);
                     let most = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
-                    [rules[most], MultiplierConstraint::Free, MultiplierConstraint::Free]
+                    let rules = [whole.rules[most], MultiplierConstraint::Free, MultiplierConstraint::Free];
+                    MultiplierConstraints { rules, axes: SupportAxes::default() }
                 }
                 _ => continue,
             };
-            states[node].law.constraints = rules;
-            dropped.insert(states.mesh_node(node), rules.map(MultiplierConstraint::is_still));
+            states[node].law.constraints = constraints;
+            let still = constraints.rules.map(MultiplierConstraint::is_still);
+            dropped.insert(states.mesh_node(node), FixedDirections { axes: constraints.axes, fixed: still });
         }
         let scalar = matches!(formulation.multiplier, Multiplier::Scalar(_));
         self.say(part, &dropped, scalar)
     }
 
-    /// Components in which nothing that a node faces can move.
-    fn resting<'a>(&self, pairs: impl Iterator<Item = FacetsOfPair<'a>>) -> BTreeMap<SlaveIndex, Fixed> {
+    /// Components along the axes of supported nodes in which nothing that they face can move.
+    fn resting<'a>(
+        &self,
+        supported: &BTreeMap<SlaveIndex, SupportedNode>,
+        pairs: impl Iterator<Item = FacetsOfPair<'a>>,
+    ) -> BTreeMap<SlaveIndex, Fixed> {
         let mut out: BTreeMap<SlaveIndex, Fixed> = BTreeMap::new();
         for FacetsOfPair { slaves, master, .. } in pairs {
-            let rests: Fixed = std::array::from_fn(|c| master.nodes.iter().all(|&node| self.fixes(node, c)));
             for &slave in slaves {
+                let Some(SupportedNode { axes, .. }) = supported.get(&slave) else { continue };
                 let own = out.entry(slave).or_insert([true; 3]);
-                (0..3).for_each(|c| own[c] &= rests[c]);
+                (0..3).for_each(|c| own[c] &= master.nodes.iter().all(|&node| self.fixes(node, axes.0[c])));
             }
         }
         out
@@ -204,15 +227,18 @@ impl SupportedNodes {
     pub(crate) fn say(
         &mut self,
         part: &ModelPart,
-        dropped: &BTreeMap<u32, Fixed>,
+        dropped: &BTreeMap<u32, FixedDirections>,
         along_normals: bool,
     ) -> Option<Diagnostic> {
-        let count = dropped.values().filter(|components| components.contains(&true)).count();
+        let count = dropped.values().filter(|own| own.fixed.contains(&true)).count();
         if count == 0 || std::mem::replace(&mut self.said, true) {
             return None;
         }
+        let is_global = |own: &&FixedDirections| own.axes == SupportAxes::default();
+        let others = dropped.values().filter(|own| !is_global(own) && own.fixed.contains(&true)).count();
         let along: Vec<String> = (0..3)
-            .map(|c| (["x", "y", "z"][c], dropped.values().filter(|components| components[c]).count()))
+            .map(|c| (["x", "y", "z"][c], dropped.values().filter(is_global).filter(|own| own.fixed[c]).count()))
+            .chain([("directions of supports", others)])
             .filter(|(_, count)| *count > 0)
             .map(|(name, count)| format!("{count} along {name}"))
             .collect();
@@ -240,17 +266,19 @@ fn foot(part: &ModelPart, node: u32, normal: [f64; 3], master: &Facet, points: &
     }
 }
 
-/// The components of supported nodes that some node of their facets has free.
+/// The components of supported nodes along which some node of their facets is free.
 fn followed<'a>(
     supported: &BTreeMap<SlaveIndex, SupportedNode>,
     facets: impl Iterator<Item = &'a [SlaveIndex]>,
 ) -> BTreeSet<(SlaveIndex, usize)> {
     let mut found = BTreeSet::new();
     for slaves in facets {
-        for c in 0..3 {
-            let is_supported = |node: &SlaveIndex| supported.get(node).is_some_and(|own| own.components[c]);
-            if slaves.iter().any(|node| !is_supported(node)) {
-                found.extend(slaves.iter().filter(|node| is_supported(node)).map(|&node| (node, c)));
+        for &node in slaves {
+            let Some(own) = supported.get(&node) else { continue };
+            for c in (0..3).filter(|&c| own.components[c]) {
+                if slaves.iter().any(|other| !supported.get(other).is_some_and(|other| other.fixes(own.axes, c))) {
+                    found.insert((node, c));
+                }
             }
         }
     }

@@ -20,7 +20,7 @@ pub use facets::{
     Interface, check_nodes, check_parts, interfaces, notes_of_bodies, set_sides, sides, slave_nodes,
     slaves_without_master, warnings_of_pairs,
 };
-pub use fixed::{Fixed, fixed_components};
+pub use fixed::{Fixed, FixedDirections, fixed_directions};
 pub use nodal_h::find_nodal_h;
 pub use normals::{FacetCorner, NodalNormals, NormalPatches, nodal_normals};
 pub use parameters::{AlmParameters, GivenParameters, alm_parameters};

@@ -22,7 +22,7 @@ use zelus_structural_mechanics::variables::NORMAL;
 
 use super::facet::{Facet, Roles};
 use super::facets::Interface;
-use super::fixed::Fixed;
+use super::fixed::FixedDirections;
 use super::patches::Patches;
 
 /// The edge that a line has not.
@@ -81,8 +81,8 @@ pub struct NormalPatches {
     corners: Vec<FacetCorner>,
     terms: Vec<Term>,
     weights: NodalNormals,
-    /// Components that the normals of nodes on planes of symmetry lack.
-    planes: BTreeMap<u32, Fixed>,
+    /// Directions that the normals of nodes on planes of symmetry lack.
+    planes: BTreeMap<u32, FixedDirections>,
 }
 
 impl NormalPatches {
@@ -150,12 +150,12 @@ impl NormalPatches {
 
     /// The same with nodes on these planes of symmetry.
     #[must_use]
-    pub fn on_planes(self, planes: BTreeMap<u32, Fixed>) -> Self {
+    pub fn on_planes(self, planes: BTreeMap<u32, FixedDirections>) -> Self {
         Self { planes, ..self }
     }
 
-    /// The components that the normal of an item lacks.
-    fn lacks(&self, item: u32) -> Fixed {
+    /// The directions that the normal of an item lacks.
+    fn lacks(&self, item: u32) -> FixedDirections {
         self.planes.get(&self.nodes[item as usize]).copied().unwrap_or_default()
     }
 
@@ -234,8 +234,7 @@ impl NormalPatches {
         for v in self.corners(item).iter().filter_map(|corner| self.normal(corner, node, places)) {
             (0..3).for_each(|c| sum[c] += v[c]);
         }
-        let lacks = self.lacks(item);
-        std::array::from_fn(|c| if lacks[c] { 0.0 } else { sum[c] })
+        self.lacks(item).free_part(sum)
     }
 
     /// Visits mesh nodes with ∂n/∂x, row by row, of the normal of an item; the derivative by a node is the sum of its visits.
@@ -255,7 +254,7 @@ impl NormalPatches {
         }
         let lacks = self.lacks(item);
         let mut outer = projector(scale(sum, 1.0 / length), length);
-        outer.iter_mut().for_each(|row| (0..3).filter(|&c| lacks[c]).for_each(|c| row[c] = 0.0));
+        outer.iter_mut().for_each(|row| *row = lacks.free_part(*row));
         for corner in self.corners(item).iter().filter(|corner| knows(corner)) {
             let mut own = [[0.0; 3]; 3];
             self.corner_variation(corner, node, places, |end, by_end| {

@@ -31,7 +31,7 @@ pub use friction_law::{Bound, COULOMB, FrictionLaw, FrictionLawEntry, find_frict
 pub use mesh_tying::MeshTying;
 pub use multiplier::Multiplier;
 pub use nitsche::{Nitsche, NitscheVariant, NodeOfPoints, PointForces, SlaveFace};
-pub use node_state::{DirectionRotation, MultiplierConstraint, NodeState};
+pub use node_state::{DirectionRotation, MultiplierConstraint, MultiplierConstraints, NodeState, SupportAxes};
 pub(crate) use rules::TURNED;
 pub use rules::{Decision, Margin, SlaveNumbers, SlipRule};
 pub use slave_node::SlaveNode;

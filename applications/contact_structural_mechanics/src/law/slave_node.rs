@@ -1,7 +1,7 @@
 //! Constants of a slave node during an assembly.
 
 use super::friction_law::Bound;
-use super::node_state::{DirectionRotation, MultiplierConstraint, NodeState};
+use super::node_state::{DirectionRotation, MultiplierConstraints, NodeState};
 
 /// Constants of a slave node during an assembly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ pub struct SlaveNode {
     /// Derivative of that direction by the unknowns.
     pub rotation: DirectionRotation,
     /// Constraint on each component of its multiplier; of a scalar one the first.
-    pub constraints: [MultiplierConstraint; 3],
+    pub constraints: MultiplierConstraints,
     /// k² A/c: the weight of the equations of constrained components.
     pub constraint_weight: f64,
     /// Tangential traction t° of the last accepted state, where a law has a history traction (force per area).

@@ -275,7 +275,8 @@ impl NodeRelation {
         let is_free = |c: usize| !part.nodes.is_fixed(DISPLACEMENT.component(c as u8), node);
         let mut push = |component: usize, masters, forces, constant| {
             let slave = (node, DISPLACEMENT.component(component as u8));
-            out.push(MasterSlaveConstraint { id: *next_id, slave, masters, forces, constant, active: true, set: None });
+            let id = *next_id;
+            out.push(MasterSlaveConstraint { id, forces, constant, ..MasterSlaveConstraint::new(slave, masters) });
             *next_id += 1;
         };
         let n = self.normal;

@@ -90,7 +90,7 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
             (area, gap, state.kinematics.pairs == 0);
         state.kinematics.mean_weighted_gap = if area > 0.0 { gap_by_area / area } else { 0.0 };
         if formulation.frictional() {
-            let is_constrained = state.law.constraints.iter().any(|constraint| constraint.is_still());
+            let is_constrained = state.law.constraints.any_still();
             state.kinematics.weighted_slip = if is_constrained {
                 along_free_tangents(slip, state.kinematics.normal, state.law.constraints)
             } else {

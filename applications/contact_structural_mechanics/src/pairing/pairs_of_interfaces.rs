@@ -14,7 +14,8 @@ use zelus_core::parallel;
 use zelus_core::vector3::dot;
 
 use crate::interface::{
-    Bodies, Facet, Fixed, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex, set_sides, sides,
+    Bodies, Facet, FixedDirections, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex, set_sides,
+    sides,
 };
 use crate::law::{NormalVariation, StepParameters};
 use crate::mortar::{Choices, MOST_NODES, SegmentationSettings};
@@ -104,9 +105,9 @@ impl Pairing {
         table
     }
 
-    /// Finds the facets around slave nodes anew, after the sides of facets or supports have changed; `planes` are the components
+    /// Finds the facets around slave nodes anew, after the sides of facets or supports have changed; `planes` are the directions
     /// that the normals of nodes on planes of symmetry lack.
-    pub(crate) fn find_normal_patches(&mut self, planes: &BTreeMap<u32, Fixed>) {
+    pub(crate) fn find_normal_patches(&mut self, planes: &BTreeMap<u32, FixedDirections>) {
         let normals = NormalPatches::of_slaves(&self.patches, &self.interfaces, self.normals.weights());
         let normals = normals.on_planes(planes.clone());
         if normals != *self.normals {
@@ -459,7 +460,12 @@ impl Pairing {
     ///
     /// # Errors
     /// Errors of making blocks.
-    pub(crate) fn resume(&mut self, planes: &BTreeMap<u32, Fixed>, setup: &Setup, state: PairingState) -> Result<()> {
+    pub(crate) fn resume(
+        &mut self,
+        planes: &BTreeMap<u32, FixedDirections>,
+        setup: &Setup,
+        state: PairingState,
+    ) -> Result<()> {
         set_sides(&mut self.interfaces, state.sides)?;
         check_pairs(&self.interfaces, state.pairs.iter().map(|pair| pair.key))?;
         if state.touching.last().is_some_and(|last| last.place() >= self.patches.len()) {

@@ -106,7 +106,7 @@ fn check_tangent(law: &dyn ContactLaw, slave: &'static FacetShape, master: &'sta
             let mut noise = Noise::new(seed + 100);
             let mut nodes = nodes(&pair, &mut noise, states);
             if seed % 3 == 2 {
-                nodes[0].constraints[0] = MultiplierConstraint::Crosspoint;
+                nodes[0].constraints.rules[0] = MultiplierConstraint::Crosspoint;
             }
             let lambda = multipliers(&pair, &mut noise);
             let history = history(&pair);

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::{Bound, DirectionRotation, MultiplierConstraint, NodeState, StepParameters};
+use crate::law::{Bound, DirectionRotation, MultiplierConstraints, NodeState, StepParameters};
 
 /// One slave node.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -54,7 +54,7 @@ pub struct SlaveLawState {
     /// Normal pressure that Uzawa's iteration keeps between updates, negative in compression (force per area).
     pub uzawa_pressure: f64,
     /// How supports hold each component of its multiplier; of a scalar one the first.
-    pub constraints: [MultiplierConstraint; 3],
+    pub constraints: MultiplierConstraints,
     /// Weight of its multiplier's equation where that states a traction (force times area).
     pub multiplier_weight: f64,
     /// Unit tangent τ: the direction of sliding.

@@ -7,7 +7,9 @@ use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::entities::{Coupling, EntityBlock, Interaction, Join, PairState, require_kind};
 use zelus_core::model::flags::ACTIVE;
-use zelus_core::model::{DofOwners, EntityRole, MasterSlaveConstraint, ModelPart, ScalarVariable};
+use zelus_core::model::{
+    DofOwners, EntityRole, MasterSlaveConstraint, ModelPart, ScalarVariable, SupportedComponent, reduce_supports,
+};
 use zelus_core::parameters::Interval;
 use zelus_core::vector3::norm;
 use zelus_core::{Result, State, StateMapper};
@@ -17,8 +19,8 @@ use super::tying_block::{TyingBlock, TyingRequest};
 use crate::active_set::{FacetsOfPair, SupportedNodes};
 use crate::flags::CONTACT;
 use crate::interface::{
-    Fixed, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex, add_contact_part, alm_parameters,
-    find_nodal_h, interfaces, nodal_normals, slaves_without_master, unlike_sections, warnings_of_pairs,
+    FixedDirections, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex, add_contact_part,
+    alm_parameters, find_nodal_h, interfaces, nodal_normals, slaves_without_master, unlike_sections, warnings_of_pairs,
 };
 use crate::mortar::SegmentationSettings;
 use crate::pairs::{
@@ -247,32 +249,40 @@ impl TyingInteraction {
         let normal = |slave: SlaveIndex| self.normals.get(slave.place()).copied().unwrap_or([0.0; 3]);
         let supported =
             if self.blocks.is_empty() { BTreeMap::new() } else { self.supported_nodes.nodes(part, &normal, pairs) };
-        let mut dropped: BTreeMap<u32, Fixed> = BTreeMap::new();
+        let mut dropped: BTreeMap<u32, FixedDirections> = BTreeMap::new();
         let mut new = Vec::new();
         for (&slave, how) in &supported {
             let node = self.patches.mesh_node(slave);
-            for (&multiplier, tied) in unknowns.iter().zip(&self.settings.tied) {
-                let Some(c) = tied.component.map(usize::from).filter(|&c| how.components[c]) else { continue };
-                if tied.column != DISPLACEMENT.name() {
+            let multipliers: [Option<ScalarVariable>; 3] = std::array::from_fn(|c| {
+                let tied = unknowns.iter().zip(&self.settings.tied);
+                let is_own = |tied: &ScalarVariable| {
+                    tied.column == DISPLACEMENT.name() && tied.component.map(usize::from) == Some(c)
+                };
+                tied.filter(|(_, tied)| is_own(tied)).map(|(&multiplier, _)| multiplier).next()
+            });
+            // Axes of the multipliers' components without an equation, with the neighbours that they follow.
+            let mut along = Vec::new();
+            for c in (0..3).filter(|&c| how.components[c]) {
+                let axis = how.axes.0[c];
+                if (0..3).any(|d| axis[d] != 0.0 && multipliers[d].is_none()) {
                     continue;
                 }
-                let masters = if how.symmetric {
-                    Vec::new()
-                } else {
-                    self.neighbours(slave, |n| !supported.get(&n).is_some_and(|other| other.components[c]))
-                };
-                let weight = 1.0 / masters.len().max(1) as f64;
+                let free = |n| !supported.get(&n).is_some_and(|other| other.fixes(how.axes, c));
+                let masters = if how.symmetric { Vec::new() } else { self.neighbours(slave, free) };
                 if masters.is_empty()
                     && !how.symmetric
-                    && self.ties_free_masters(slave, |n| self.supported_nodes.fixes(n, c))
+                    && self.ties_free_masters(slave, |n| self.supported_nodes.fixes(n, axis))
                 {
                     continue;
                 }
-                let masters = masters.into_iter().map(|n| ((self.patches.mesh_node(n), multiplier), weight)).collect();
-                let set = Some(set_name(&name, self.patches.patch(slave)));
-                new.push(MasterSlaveConstraint { set, ..MasterSlaveConstraint::new((node, multiplier), masters) });
-                dropped.entry(node).or_default()[c] = true;
+                along.push((axis, masters));
+                let own = FixedDirections { axes: how.axes, ..FixedDirections::default() };
+                dropped.entry(node).or_insert(own).fixed[c] = true;
             }
+            let set = Some(set_name(&name, self.patches.patch(slave)));
+            let of = |n: SlaveIndex| self.patches.mesh_node(n);
+            let followed = following(node, &along, &multipliers, part.info.domain_size, of);
+            new.extend(followed.into_iter().map(|own| MasterSlaveConstraint { set: set.clone(), ..own }));
         }
         self.constrained += u64::from(old != new);
         constraints.extend(new);
@@ -500,4 +510,40 @@ impl Coupling for TyingInteraction {
     fn relaxation(&self) -> Option<f64> {
         Some(RELAXATION * self.scale_factor)
     }
+}
+
+/// Constraints by which components of a node's multiplier along axes are the means of those of other nodes; zero without any.
+fn following(
+    node: u32,
+    along: &[([f64; 3], Vec<SlaveIndex>)],
+    multipliers: &[Option<ScalarVariable>; 3],
+    dimension: usize,
+    of: impl Fn(SlaveIndex) -> u32,
+) -> Vec<MasterSlaveConstraint> {
+    // Solved with the mean of each axis as the only value.
+    let solved: Vec<_> = (0..along.len())
+        .filter_map(|only| {
+            let rows = along.iter().enumerate().map(|(at, (axis, _))| (*axis, Some(f64::from(u8::from(at == only)))));
+            let rows: Vec<_> = rows.collect();
+            reduce_supports(&rows, [SupportedComponent::Free; 3], dimension).ok()
+        })
+        .collect();
+    let Some(first) = solved.first() else { return Vec::new() };
+    let mut out = Vec::new();
+    for (at, form) in first.iter().enumerate() {
+        let Some((slave, Some(own))) = form.as_ref().and_then(|form| Some((form, multipliers[form.0]))) else {
+            continue;
+        };
+        let mut masters: Vec<_> =
+            slave.1.iter().filter_map(|&(m, weight)| Some(((node, multipliers[m]?), weight))).collect();
+        for ((axis, neighbours), solved) in along.iter().zip(&solved) {
+            let factor = solved[at].as_ref().map_or(0.0, |(_, _, constant)| *constant) / neighbours.len().max(1) as f64;
+            for &neighbour in neighbours.iter().filter(|_| factor != 0.0) {
+                let parts = (0..3).filter(|&d| axis[d] != 0.0);
+                masters.extend(parts.filter_map(|d| Some(((of(neighbour), multipliers[d]?), factor * axis[d]))));
+            }
+        }
+        out.push(MasterSlaveConstraint::new((node, own), masters));
+    }
+    out
 }

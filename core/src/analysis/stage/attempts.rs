@@ -112,7 +112,8 @@ impl Stage {
         let ranks = run.model.ranks.clone();
         let processes = &mut self.processes;
         run.driver.at(LoopPoint::BeginStep, &self.root, run.model, &self.system, &mut |model| {
-            processes.iter_mut().try_for_each(|process| ranks.agree(process.begin_step(model)))
+            processes.iter_mut().try_for_each(|process| ranks.agree(process.begin_step(model)))?;
+            processes.iter_mut().try_for_each(|process| ranks.agree(process.constrain(model)))
         })?;
         let start = Instant::now();
         let record = self.strategy.solve_step(run.model.root_mut(&self.root)?, &mut self.system, run.monitor)?;

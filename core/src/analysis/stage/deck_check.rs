@@ -61,8 +61,9 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<(Vec<Diagnostic
     }
     let mut contact_restrains = None;
     if is_static && part.info.step == 0 {
-        contact_restrains =
-            Some(report_restraints(part, system, &prescriptions(part, processes, middle), &mut problems));
+        let prescribed = prescriptions(part, processes, middle);
+        let along: Vec<_> = processes.iter().filter_map(|process| process.prescribes_along(part, middle)).collect();
+        contact_restrains = Some(report_restraints(part, system, &prescribed, &along, &mut problems));
         // Later stages may release what earlier ones have loaded.
         if schedule.start_time <= 0.0 {
             warn_of_no_load(part, system, processes, &mut problems);

@@ -57,7 +57,7 @@ impl StepEquations {
 
     /// Takes up the same equations, whose slaves may pass forces on to fixed unknowns in another way.
     pub fn update_fixed_masters(&mut self, map: Equations) {
-        self.map.leaning = map.leaning;
+        self.map.take_forces(map);
     }
 
     /// Gives the layout of the equations the near null space of all unknowns, where it lacks it.
