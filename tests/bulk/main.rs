@@ -9,5 +9,6 @@ mod elastic;
 mod grid;
 mod large_strain;
 mod plastic;
+mod resultants;
 mod springs;
 mod supports;

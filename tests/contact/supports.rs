@@ -449,3 +449,63 @@ fn driven_sides_slide_however_little() {
         }
     }
 }
+
+/// A rotation by 0.5 about z, in space by 0.7 about x after it.
+fn turned(space: usize, [x, y, z]: Vec3) -> Vec3 {
+    let ((s, c), (t, d)) = (0.5_f64.sin_cos(), 0.7_f64.sin_cos());
+    let [x, y] = [c * x - s * y, s * x + c * y];
+    if space == 2 { [x, y, z] } else { [x, d * y - t * z, t * y + d * z] }
+}
+
+/// ANALYTIC: a turned column on supports along turned directions has the turned displacements: slave nodes on one or two planes of
+/// symmetry, with friction, without, and tied.
+#[test]
+fn turned_supports_have_turned_contact() {
+    let mut problems = Vec::new();
+    for (space, joint) in [2, 3].into_iter().flat_map(|space| {
+        [Joint::Frictional(0.3), Joint::Frictional(1.0), Joint::Frictionless, Joint::Tied].map(|joint| (space, joint))
+    }) {
+        for upper_is_slave in [true, false] {
+            let answer = |is_turned: bool| {
+                let mut mesh = column(Mesh::new(space), [3, 4], upper_is_slave, |x| 0.5 + 0.2 * (x[0] - 0.5));
+                let mut supports = [vec![("Bottom".to_owned(), holds(&[space - 1]))], planes(space)].concat();
+                let turn = |x: Vec3| if is_turned { turned(space, x) } else { x };
+                mesh.nodes.iter_mut().for_each(|x| *x = turn(*x));
+                let mut along = Vec::new();
+                if is_turned {
+                    along = std::mem::take(&mut supports);
+                }
+                let deck = Deck { mesh, joint, supports, pressure: 1e4, young: 1e9, steps: 2 };
+                let folder = tempfile::tempdir().expect("a folder");
+                let change = |deck: &mut Value| {
+                    let lists = &mut deck["processes"];
+                    for (part, value) in &along {
+                        let unit = std::array::from_fn(|c| if value[c].is_null() { 0.0 } else { 1.0 });
+                        let process = json!({"python_module": "assign_displacement_along_direction_process",
+                            "Parameters": {"model_part_name": format!("Structure.{part}"), "direction": turn(unit)}});
+                        lists["constraints_process_list"].as_array_mut().expect("a list").push(process);
+                    }
+                    let down: Vec3 = std::array::from_fn(|c| if c + 1 == space { -1.0 } else { 0.0 });
+                    lists["loads_process_list"][0]["Parameters"]["direction"] = json!(turn(down));
+                };
+                run(&deck, folder.path(), change).map(|(_, found)| found)
+            };
+            let place = format!("{space}D, {joint:?}, upper slave {upper_is_slave}");
+            match (answer(false), answer(true)) {
+                (Ok(straight), Ok(oblique)) => {
+                    let expected: Vec<Vec3> = straight.into_iter().map(|u| turned(space, u)).collect();
+                    let size = expected.iter().flatten().fold(0.0_f64, |most, u| most.max(u.abs()));
+                    let pairs = oblique.iter().zip(&expected).flat_map(|(a, b)| (0..3).map(|c| (a[c] - b[c]).abs()));
+                    let off = pairs.fold(0.0, f64::max) / size;
+                    println!("{place}: {off:.1e}");
+                    if off.is_nan() || off > 1e-9 {
+                        problems.push(format!("{place}: off by {off:e}"));
+                    }
+                }
+                (Err(said), _) => problems.push(format!("{place}, straight: {said}")),
+                (_, Err(said)) => problems.push(format!("{place}, turned: {said}")),
+            }
+        }
+    }
+    assert!(problems.is_empty(), "{} fail\n{}", problems.len(), problems.join("\n"));
+}

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use crate::support::{root, scratch_copy};
 use crate::thread_ranks::on_threads;
+use serde_json::{Value, json};
 use zelus::core::communication::Ranks;
 use zelus::{RunOptions, Silent, Simulation};
 
@@ -31,12 +32,27 @@ fn is_near(found: &Outcome, expected: &Outcome) -> bool {
 
 /// Runs on three ranks, on two and on one at the same time.
 fn stand_side_by_side(case: &str) {
-    let folder = scratch_copy(&root().join("tests/cases").join(case));
+    stand_side_by_side_with(case, true, |_| {});
+}
+
+/// As [`stand_side_by_side`], with changed lists of processes; a small mesh may be whole on every rank.
+fn stand_side_by_side_with(case: &str, is_shared: bool, change: fn(&mut Value)) {
+    let changed = |case: &str| {
+        let folder = scratch_copy(&root().join("tests/cases").join(case));
+        let path = folder.path().join("ProjectParameters.json");
+        let mut deck: Value =
+            serde_json::from_str(&std::fs::read_to_string(&path).expect("a deck")).expect("a deck without comments");
+        change(&mut deck["processes"]);
+        std::fs::write(&path, deck.to_string()).expect("the changed deck");
+        folder
+    };
+    let folder = changed(case);
     let expected = outcome(folder.path(), Ranks::default());
     let results = std::thread::scope(|scope| {
+        let changed = &changed;
         let start = |count| {
             scope.spawn(move || {
-                let own = scratch_copy(&root().join("tests/cases").join(case));
+                let own = changed(case);
                 on_threads(count, |ranks| outcome(own.path(), ranks))
             })
         };
@@ -46,7 +62,10 @@ fn stand_side_by_side(case: &str) {
     for of_ranks in results {
         let count = of_ranks.len();
         let nodes: usize = of_ranks.iter().map(|found| found.0.len()).sum();
-        assert!(count == 1 || nodes < count * expected.0.len(), "{case} on {count} ranks: nothing is shared out");
+        assert!(
+            !is_shared || count == 1 || nodes < count * expected.0.len(),
+            "{case} on {count} ranks: nothing is shared out"
+        );
         assert!(of_ranks.iter().all(|found| is_near(found, &expected)), "{case} on {count} ranks: another answer");
     }
 }
@@ -60,6 +79,34 @@ fn contact_in_the_plane() {
 #[test]
 fn contact_in_space() {
     stand_side_by_side("contact_3d/hexahedra_nonmatching");
+}
+
+fn along(part: &str, direction: Value) -> Value {
+    json!({"python_module": "assign_displacement_along_direction_process", "Parameters": {
+        "model_part_name": format!("Structure.{part}"), "direction": direction, "origin": [-30.0, 10.0, 0.0]}})
+}
+
+fn resultant(part: &str, force: [f64; 3], moment: [f64; 3], point: [f64; 3]) -> Value {
+    json!([{"python_module": "distribute_resultant_on_part_process", "Parameters": {
+        "model_part_name": format!("Structure.{part}"), "force": force, "moment": moment, "point": point}}])
+}
+
+/// A foundation that slides along a slope, sides by their normals, and a remote load; two directions at each node of an edge.
+#[test]
+fn directions_and_resultants() {
+    stand_side_by_side_with("structural/cooks_membrane_mixed", true, |lists| {
+        lists["constraints_process_list"] =
+            json!([along("Held", json!([0.6, 0.8, 0.0])), along("Held", json!("radial"))]);
+        lists["loads_process_list"] = resultant("Pulled", [1.0, 5.0, 0.0], [0.0, 0.0, 3.0], [60.0, 40.0, 0.0]);
+    });
+    stand_side_by_side_with("contact_3d/hexahedra_nonmatching", false, |lists| {
+        lists["constraints_process_list"] = json!([
+            along("Bottom", json!([0.6, 0.0, 0.8])),
+            along("SidesX", json!("surface_normal")),
+            along("SidesY", json!([0.0, 1.0, 0.0])),
+        ]);
+        lists["loads_process_list"] = resultant("Top", [0.0, 0.0, -1e6], [2e4, 0.0, 0.0], [0.5, 0.55, 2.0]);
+    });
 }
 
 /// Ranks that have nothing of a variable measure it with the others.

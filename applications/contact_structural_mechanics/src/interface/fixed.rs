@@ -22,7 +22,7 @@ const NO_PART: f64 = 1e-6;
 pub struct FixedDirections {
     /// Axes; the global ones unless a support acts along another direction.
     pub axes: SupportAxes,
-    /// Those along which the node is prescribed.
+    /// Mask of the axes along which the node is prescribed.
     pub fixed: Fixed,
 }
 

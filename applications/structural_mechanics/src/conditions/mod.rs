@@ -8,6 +8,7 @@ mod geometry_only;
 mod line_load;
 mod load;
 mod point_load;
+mod resultant_load;
 mod surface_load;
 #[cfg(test)]
 mod tests;
@@ -16,4 +17,5 @@ pub use geometry_only::GeometryOnly;
 pub use line_load::{LineLoad, SpatialLineLoad};
 pub use load::{AtStart, Distributed, DistributedLoad};
 pub use point_load::PointLoad;
+pub use resultant_load::ResultantLoad;
 pub use surface_load::SurfaceLoad;

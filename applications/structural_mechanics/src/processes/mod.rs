@@ -1,6 +1,8 @@
 //! Processes of structural mechanics.
 
 mod outward_faces;
+mod resultant;
+mod distribute_load_on_surface_process;
 mod assign_displacement_along_direction_process;
 mod impose_rigid_movement_process;
 mod sprism_process;

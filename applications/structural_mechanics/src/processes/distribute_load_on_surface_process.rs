@@ -1,0 +1,194 @@
+//! Spreads a force, and a moment, over a part so that their totals are exact: [`super::resultant`].
+//!
+//! Nodal forces are those of the initial geometry and keep their directions (dead loads). Each node of the part gets a
+//! `ResultantLoadCondition`, so that the mesh needs no load conditions.
+
+use std::ops::Range;
+
+use zelus_core::assembly::System;
+use zelus_core::diagnostics::{Diagnostic, Report, Result};
+use zelus_core::entities::require_kind;
+use zelus_core::model::{EntityRole, Model, ModelPart};
+use zelus_core::parameters::{Settings, SpaceTime};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, ScalarValue, Target, check_unknowns};
+use zelus_core::register;
+
+use super::resultant::Resultant;
+use crate::variables::{DISPLACEMENT, RESULTANT_LOAD};
+
+struct DistributeLoad {
+    target: Target,
+    force: [ScalarValue; 3],
+    moment: [ScalarValue; 3],
+    /// Point of the force; `None`: the centre.
+    point: Option<[f64; 3]>,
+    resultant: Resultant,
+    /// Its conditions, one a node.
+    made: Range<usize>,
+}
+
+/// Three numbers, functions or tables.
+fn vector(settings: &Settings, key: &str) -> Result<[ScalarValue; 3]> {
+    let node = settings.get(key)?;
+    if node.is_null() {
+        return Ok([const { ScalarValue::Number(0.0) }; 3]);
+    }
+    let Some([x, y, z]) = node.as_array() else {
+        let fact = format!("{key:?} must be three numbers, functions or tables, found {node}");
+        return Err(settings.error(key, "wrong-type", fact).remedy("write e.g. [0.0, \"-100.0*t\", 0.0]").into());
+    };
+    Ok([ScalarValue::from_node(x)?, ScalarValue::from_node(y)?, ScalarValue::from_node(z)?])
+}
+
+fn build_force(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
+    let settings = request.settings_with(|defaults| defaults.require(&["model_part_name", "load"]))?;
+    let force = vector(&settings, "load")?;
+    made(request, &settings, force, [const { ScalarValue::Number(0.0) }; 3], None)
+}
+
+fn build_resultant(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
+    let settings = request.settings_with(|defaults| defaults.require(&["model_part_name"]))?;
+    let (force, moment) = (vector(&settings, "force")?, vector(&settings, "moment")?);
+    let point = settings.get("point")?;
+    let point = (!point.is_null()).then(|| point.parse("point")).transpose()?;
+    made(request, &settings, force, moment, point)
+}
+
+fn made(
+    request: &mut ProcessRequest<'_>,
+    settings: &Settings,
+    force: [ScalarValue; 3],
+    moment: [ScalarValue; 3],
+    point: Option<[f64; 3]>,
+) -> Result<Box<dyn Process>> {
+    let target = Target::new(settings, request.model)?;
+    let part = request.model.root(&target.path)?;
+    let problem = |code, fact: String, remedy: &str| {
+        Diagnostic::error(code, fact).at(target.place.clone()).remedy(remedy.to_owned())
+    };
+    if part.elements.kinds.iter().any(|kind| kind.name.contains("Axisym")) {
+        let fact = format!("{} of a body of revolution has no resultant but along the axis", target.path);
+        return Err(problem("axisymmetric-resultant", fact, "divide the force by the area, as LINE_LOAD").into());
+    }
+    if part.info.domain_size == 2 {
+        let lost = !(force[2].is_zero() && moment[0].is_zero() && moment[1].is_zero());
+        if lost {
+            let fact = format!("the load on {} has a part out of the plane", target.path);
+            return Err(problem("out-of-plane", fact, "give x and y of the force, and z of the moment").into());
+        }
+    }
+    let resultant = Resultant::of(part, target.selection(&part.tree)?);
+    if resultant.nodes().len() == 0 {
+        let fact = format!("{} has no nodes to which a load could be given", target.path);
+        return Err(problem("empty-part", fact, "name a part with the conditions or nodes of the surface").into());
+    }
+    if !(resultant.area > 0.0 && resultant.area.is_finite()) {
+        let fact = format!("the area of {} is {}", target.path, resultant.area);
+        return Err(problem("zero-area", fact, "check the nodes of its conditions").into());
+    }
+    Ok(Box::new(DistributeLoad { target, force, moment, point, resultant, made: 0..0 }))
+}
+
+impl DistributeLoad {
+    /// The forces at the nodes at a time.
+    fn forces(&self, time: f64) -> Result<Vec<[f64; 3]>> {
+        let point = self.point.unwrap_or(self.resultant.centre);
+        let here = SpaceTime { current: point, initial: point, time };
+        let [force, moment] =
+            [&self.force, &self.moment].map(|values| values.each_ref().map(|value| value.value(&here)));
+        if let Some(wrong) = force.iter().chain(&moment).find(|value| !value.is_finite()) {
+            let variable = RESULTANT_LOAD.component(0);
+            return Err(self.target.not_finite(variable, *wrong, time, "the point of the load").into());
+        }
+        self.resultant.forces(force, moment, point).ok_or_else(|| {
+            let fact =
+                format!("the nodes of {} lie on a line or at a point and cannot take the moment", self.target.path);
+            Diagnostic::error("moment-without-arm", fact)
+                .at(self.target.place.clone())
+                .remedy("name a part whose nodes lie around the axis of the moment, or leave the moment out")
+                .into()
+        })
+    }
+
+    fn give(&self, part: &mut ModelPart, forces: &[[f64; 3]]) {
+        part.conditions.data.add(&RESULTANT_LOAD);
+        let column = part.conditions.data.values_mut(&RESULTANT_LOAD, 0);
+        let own = column[3 * self.made.start..3 * self.made.end].as_chunks_mut::<3>().0;
+        own.iter_mut().zip(forces).for_each(|(own, force)| *own = *force);
+    }
+}
+
+impl Process for DistributeLoad {
+    fn initialize(&mut self, model: &mut Model) -> Result<()> {
+        let part = model.root_mut(&self.target.path)?;
+        let kind = require_kind(EntityRole::Condition, &format!("ResultantLoadCondition{}D1N", part.info.domain_size))?;
+        // Every rank has all nodes of the part, so that all make the same conditions, with the same ids.
+        let largest = part.ranks.gather_numbers(&[part.conditions.max_id() as f64]).concat();
+        let next = largest.into_iter().fold(0.0, f64::max) as usize + 1;
+        let properties = part.properties.keys().next().copied().unwrap_or(0);
+        let first = part.conditions.len();
+        for (id, node) in (next..).zip(self.resultant.nodes()) {
+            part.conditions.push(id, kind, properties, &[node]);
+        }
+        part.conditions.finish();
+        self.made = first..part.conditions.len();
+        part.tree.conditions.extend(self.made.start as u32..self.made.end as u32);
+        part.tree.normalise();
+        if let Some(share) = &mut part.share {
+            let owners: Vec<u32> = self.resultant.nodes().map(|node| share.owners[node as usize]).collect();
+            share.whole.conditions += owners.len();
+            share.conditions.extend(owners);
+        }
+        Ok(())
+    }
+
+    fn check(&self, model: &Model, system: &System, _warnings: &mut Report) -> Result<()> {
+        let part = model.root(&self.target.path)?;
+        let unknowns = self.resultant.nodes().map(|node| (node, DISPLACEMENT.component(0)));
+        check_unknowns(part, system, unknowns, &self.target.place)?;
+        self.forces(self.target.interval.begin.max(1.0).min(self.target.interval.end)).map(drop)
+    }
+
+    fn drives(&self, part: &ModelPart, _system: &System) -> bool {
+        self.target.is_of(part) && !self.force.iter().chain(&self.moment).all(ScalarValue::is_zero)
+    }
+
+    fn begin_step(&mut self, model: &mut Model) -> Result<()> {
+        let part = model.root_mut(&self.target.path)?;
+        let time = part.info.time;
+        let forces = match self.target.interval.contains(time) {
+            true => self.forces(time)?,
+            false => vec![[0.0; 3]; self.made.len()],
+        };
+        self.give(part, &forces);
+        Ok(())
+    }
+
+    fn finalize(&mut self, model: &mut Model) -> Result<()> {
+        let none = vec![[0.0; 3]; self.made.len()];
+        self.give(model.root_mut(&self.target.path)?, &none);
+        Ok(())
+    }
+
+    fn suspend(&mut self, _model: &mut Model) -> Result<()> {
+        Ok(())
+    }
+}
+
+register! { ProcessEntry "distribute_load_on_surface_process",
+    aliases: &["DistributeLoadOnSurfaceProcess"],
+    about: "spreads a force over the area of a part",
+    source: "f_i = F ∫ N_i dA / A",
+    common: &["model_part_name"],
+    defaults: include_str!("../../../../configs/processes/distribute_load_on_surface_process.json"),
+    build: build_force,
+}
+
+register! { ProcessEntry "distribute_resultant_on_part_process",
+    aliases: &["DistributeResultantOnPartProcess"],
+    about: "spreads a force at a point and a moment over a surface, an edge or points: a remote load",
+    source: "f_i = ∫ N_i (F/A + θ × r) dA with J θ = M",
+    common: &["model_part_name"],
+    defaults: include_str!("../../../../configs/processes/distribute_resultant_on_part_process.json"),
+    build: build_resultant,
+}
