@@ -114,6 +114,31 @@ fn a_moment_bends_a_strip() {
     }
 }
 
+/// ANALYTIC: a follower force on a body that its supports rotate has the direction of the rotation at the start of the step.
+#[test]
+fn a_follower_force_rotates_with_its_part() {
+    for shape in [Shape::Quad8, Shape::Hex8] {
+        let dim = shape.dim();
+        let grid = Grid::new(shape, &[2, 2, 2][..dim], |p| p);
+        let law = if dim == 2 { "LinearElasticPlaneStrain2DLaw" } else { "LinearElastic3DLaw" };
+        let material = json!({"YOUNG_MODULUS": 1e3, "POISSON_RATIO": 0.3});
+        let mut deck = Deck::new(&grid, "TotalLagrangianElement", law, material);
+        deck.steps(0.25, 1.0);
+        let z = if dim == 2 { FREE } else { zero() };
+        deck.fix(
+            |p| p[0] == 0.0 || p[0] == 1.0,
+            [json!("X*(cos(0.8*t)-1)-Y*sin(0.8*t)"), json!("X*sin(0.8*t)+Y*(cos(0.8*t)-1)"), z],
+        );
+        let name = deck.nodes(|p| p[0] == 1.0);
+        let settings =
+            json!({"model_part_name": format!("Structure.{name}"), "force": [2.0, 1.0, 0.0], "follower": true});
+        deck.process(RESULTANT, settings);
+        let (sine, cosine) = 0.6_f64.sin_cos();
+        let expected = [2.0 * cosine - sine, 2.0 * sine + cosine, 0.0];
+        assert_vector(loads(&deck.run())[0], expected, 2.0, &format!("follower on {shape:?}"));
+    }
+}
+
 /// A moment about a line of nodes and loads out of the plane are named before the run.
 #[test]
 fn mistakes_are_named() {

@@ -86,27 +86,31 @@ fn along(part: &str, direction: Value) -> Value {
         "model_part_name": format!("Structure.{part}"), "direction": direction, "origin": [-30.0, 10.0, 0.0]}})
 }
 
-fn resultant(part: &str, force: [f64; 3], moment: [f64; 3], point: [f64; 3]) -> Value {
+fn resultant(part: &str, force: Value, moment: [f64; 3], point: [f64; 3]) -> Value {
     json!([{"python_module": "distribute_resultant_on_part_process", "Parameters": {
         "model_part_name": format!("Structure.{part}"), "force": force, "moment": moment, "point": point}}])
 }
 
-/// A foundation that slides along a slope, sides by their normals, and a remote load; two directions at each node of an edge.
+/// Two directions at each node of the clamped edge of `structural/cooks_membrane_mixed`, and a remote load.
+pub fn clamp_by_directions(lists: &mut Value) {
+    lists["constraints_process_list"] = json!([along("Held", json!([0.6, 0.8, 0.0])), along("Held", json!("radial"))]);
+    lists["loads_process_list"] = resultant("Pulled", json!([1.0, "5*t", 0.0]), [0.0, 0.0, 3.0], [60.0, 40.0, 0.0]);
+}
+
+/// A foundation of `contact_3d/hexahedra_nonmatching` that slides along a slope, sides by their normals, and a remote load.
+pub fn slide_on_a_slope(lists: &mut Value) {
+    lists["constraints_process_list"] = json!([
+        along("Bottom", json!([0.6, 0.0, 0.8])),
+        along("SidesX", json!("surface_normal")),
+        along("SidesY", json!([0.0, 1.0, 0.0])),
+    ]);
+    lists["loads_process_list"] = resultant("Top", json!([0.0, 0.0, "-1e6*t"]), [2e4, 0.0, 0.0], [0.5, 0.55, 2.0]);
+}
+
 #[test]
 fn directions_and_resultants() {
-    stand_side_by_side_with("structural/cooks_membrane_mixed", true, |lists| {
-        lists["constraints_process_list"] =
-            json!([along("Held", json!([0.6, 0.8, 0.0])), along("Held", json!("radial"))]);
-        lists["loads_process_list"] = resultant("Pulled", [1.0, 5.0, 0.0], [0.0, 0.0, 3.0], [60.0, 40.0, 0.0]);
-    });
-    stand_side_by_side_with("contact_3d/hexahedra_nonmatching", false, |lists| {
-        lists["constraints_process_list"] = json!([
-            along("Bottom", json!([0.6, 0.0, 0.8])),
-            along("SidesX", json!("surface_normal")),
-            along("SidesY", json!([0.0, 1.0, 0.0])),
-        ]);
-        lists["loads_process_list"] = resultant("Top", [0.0, 0.0, -1e6], [2e4, 0.0, 0.0], [0.5, 0.55, 2.0]);
-    });
+    stand_side_by_side_with("structural/cooks_membrane_mixed", true, clamp_by_directions);
+    stand_side_by_side_with("contact_3d/hexahedra_nonmatching", false, slide_on_a_slope);
 }
 
 /// Ranks that have nothing of a variable measure it with the others.

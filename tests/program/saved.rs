@@ -5,6 +5,7 @@ use crate::support;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use crate::ranks_as_threads::{clamp_by_directions, slide_on_a_slope};
 use crate::support::{contents, root, scratch_copy};
 use crate::thread_ranks::on_threads;
 use serde_json::{Value, json};
@@ -26,6 +27,18 @@ struct Case {
 const fn case(folder: &'static str, steps: usize) -> Case {
     Case { folder, change: |_| {}, steps }
 }
+
+/// Supports along directions and resultants.
+const DIRECTIONS: Case = Case {
+    folder: "cases/structural/cooks_membrane_mixed",
+    change: |deck| clamp_by_directions(&mut deck["processes"]),
+    steps: 4,
+};
+const SLOPE: Case = Case {
+    folder: "cases/contact_3d/hexahedra_nonmatching",
+    change: |deck| slide_on_a_slope(&mut deck["processes"]),
+    steps: 4,
+};
 
 fn open(folder: &Path, threads: usize) -> Simulation {
     let options = RunOptions { threads: Some(threads), ..RunOptions::default() };
@@ -190,6 +203,8 @@ fn ties_and_constraints() {
         case("cases/mpc/mapped_field", 4),
         case("cases/constraints/rigid_plate", 4),
         case("cases/constraints/rigid_plate_elimination", 4),
+        DIRECTIONS,
+        SLOPE,
     ]);
 }
 
@@ -431,6 +446,8 @@ fn contact_goes_on_over_other_ranks() {
             steps: 4,
         },
         case("cases/mesh_tying/quadrilaterals", 4),
+        DIRECTIONS,
+        SLOPE,
     ]);
 }
 

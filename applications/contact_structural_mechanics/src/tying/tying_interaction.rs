@@ -531,7 +531,7 @@ fn following(
     let Some(first) = solved.first() else { return Vec::new() };
     let mut out = Vec::new();
     for (at, form) in first.iter().enumerate() {
-        let Some((slave, Some(own))) = form.as_ref().and_then(|form| Some((form, multipliers[form.0]))) else {
+        let Some((slave, Some(own))) = form.as_ref().map(|form| (form, multipliers[form.0])) else {
             continue;
         };
         let mut masters: Vec<_> =

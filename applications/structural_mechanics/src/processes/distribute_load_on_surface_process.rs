@@ -1,6 +1,7 @@
 //! Spreads a force, and a moment, over a part so that their totals are exact: [`super::resultant`].
 //!
-//! Nodal forces are those of the initial geometry and keep their directions (dead loads). Each node of the part gets a
+//! Nodal forces are those of the initial geometry. Dead loads keep their directions; follower loads follow the mean rotation of the
+//! part at the start of each step. Each node of the part gets a
 //! `ResultantLoadCondition`, so that the mesh needs no load conditions.
 
 use std::ops::Range;
@@ -12,6 +13,7 @@ use zelus_core::model::{EntityRole, Model, ModelPart};
 use zelus_core::parameters::{Settings, SpaceTime};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, ScalarValue, Target, check_unknowns};
 use zelus_core::register;
+use zelus_core::vector3::dot;
 
 use super::resultant::Resultant;
 use crate::variables::{DISPLACEMENT, RESULTANT_LOAD};
@@ -23,6 +25,8 @@ struct DistributeLoad {
     /// Point of the force; `None`: the centre.
     point: Option<[f64; 3]>,
     resultant: Resultant,
+    /// Whether the load follows the mean rotation of the part.
+    follower: bool,
     /// Its conditions, one a node.
     made: Range<usize>,
 }
@@ -43,7 +47,7 @@ fn vector(settings: &Settings, key: &str) -> Result<[ScalarValue; 3]> {
 fn build_force(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(|defaults| defaults.require(&["model_part_name", "load"]))?;
     let force = vector(&settings, "load")?;
-    made(request, &settings, force, [const { ScalarValue::Number(0.0) }; 3], None)
+    made(request, &settings, force, [const { ScalarValue::Number(0.0) }; 3], None, false)
 }
 
 fn build_resultant(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
@@ -51,7 +55,8 @@ fn build_resultant(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>>
     let (force, moment) = (vector(&settings, "force")?, vector(&settings, "moment")?);
     let point = settings.get("point")?;
     let point = (!point.is_null()).then(|| point.parse("point")).transpose()?;
-    made(request, &settings, force, moment, point)
+    let follower = settings.get_bool("follower")?;
+    made(request, &settings, force, moment, point, follower)
 }
 
 fn made(
@@ -60,6 +65,7 @@ fn made(
     force: [ScalarValue; 3],
     moment: [ScalarValue; 3],
     point: Option<[f64; 3]>,
+    follower: bool,
 ) -> Result<Box<dyn Process>> {
     let target = Target::new(settings, request.model)?;
     let part = request.model.root(&target.path)?;
@@ -86,7 +92,11 @@ fn made(
         let fact = format!("the area of {} is {}", target.path, resultant.area);
         return Err(problem("zero-area", fact, "check the nodes of its conditions").into());
     }
-    Ok(Box::new(DistributeLoad { target, force, moment, point, resultant, made: 0..0 }))
+    if follower && resultant.rotation(part).is_none() {
+        let fact = format!("the nodes of {} lie on a line, whose rotation about itself is unknown", target.path);
+        return Err(problem("moment-without-arm", fact, "name a surface, or set \"follower\": false").into());
+    }
+    Ok(Box::new(DistributeLoad { target, force, moment, point, resultant, follower, made: 0..0 }))
 }
 
 impl DistributeLoad {
@@ -156,10 +166,13 @@ impl Process for DistributeLoad {
     fn begin_step(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root_mut(&self.target.path)?;
         let time = part.info.time;
-        let forces = match self.target.interval.contains(time) {
+        let mut forces = match self.target.interval.contains(time) {
             true => self.forces(time)?,
             false => vec![[0.0; 3]; self.made.len()],
         };
+        if let Some(rotation) = self.resultant.rotation(part).filter(|_| self.follower) {
+            forces.iter_mut().for_each(|force| *force = rotation.map(|row| dot(row, *force)));
+        }
         self.give(part, &forces);
         Ok(())
     }

@@ -7,6 +7,7 @@
 
 use std::collections::BTreeMap;
 
+use nalgebra::{Matrix3, Vector3};
 use zelus_core::geometry::{Shape, ShapeTable, mapping};
 use zelus_core::model::{ModelPart, SubPart};
 use zelus_core::vector3::{add, cross, dot, norm, scale, sub};
@@ -80,6 +81,28 @@ impl Resultant {
     /// The nodes, ascending.
     pub fn nodes(&self) -> impl ExactSizeIterator<Item = u32> + '_ {
         self.nodes.iter().map(|(node, ..)| *node)
+    }
+
+    /// The mean rotation of the part from the initial to the present positions, by the polar decomposition of ∫ x⊗r dA; `None` in
+    /// space where the nodes lie on a line.
+    pub fn rotation(&self, part: &ModelPart) -> Option<[[f64; 3]; 3]> {
+        let mut sum = Matrix3::zeros();
+        for &(node, _, s) in &self.nodes {
+            sum += Vector3::from(part.nodes.current[node as usize]) * Vector3::from(s).transpose();
+        }
+        if part.info.domain_size == 2 {
+            let (sine, cosine) = (sum[(1, 0)] - sum[(0, 1)]).atan2(sum[(0, 0)] + sum[(1, 1)]).sin_cos();
+            return Some([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]);
+        }
+        let parts = sum.svd(true, true);
+        let (left, right) = (parts.u?, parts.v_t?);
+        if parts.singular_values[1] <= ON_LINE.sqrt() * parts.singular_values[0] {
+            return None;
+        }
+        // A plane part has no extent across it: the third axes form a rotation with the others.
+        let third = Vector3::new(1.0, 1.0, (left * right).determinant().signum());
+        let rotation = left * Matrix3::from_diagonal(&third) * right;
+        Some(std::array::from_fn(|r| std::array::from_fn(|c| rotation[(r, c)])))
     }
 
     /// The forces at the nodes that a force and a moment about a point give; `None` for the moment about a line of nodes.
