@@ -297,3 +297,34 @@ fn mistakes_are_named() {
         assert!(said.contains(code) && said.contains(fact), "{code} {fact}: {said}");
     }
 }
+
+/// ANALYTIC: a block on springs to the ground under its own forces: u = F/(n k).
+#[test]
+fn ground_springs_hold_a_free_body() {
+    let grid = Grid::new(Shape::Hex8, &[2, 2, 2], |p| p);
+    let material = json!({"YOUNG_MODULUS": 1e3, "POISSON_RATIO": 0.3});
+    let mut deck = Deck::new(&grid, "SmallDisplacementElement", "LinearElastic3DLaw", material);
+    let part = name(&mut deck, |_| true);
+    deck.process("assign_ground_springs_process", json!({"model_part_name": part, "stiffness": [1.0, 2.0, 4.0]}));
+    let load = json!({"model_part_name": part, "load": [0.27, 0.27, -0.27]});
+    deck.process("distribute_load_on_surface_process", load);
+    let ran = deck.run();
+    for u in ran.displacements(&grid) {
+        (0..3).for_each(|c| assert_close(u[c], [0.01, 0.005, -0.0025][c], 1e-9, "spring"));
+    }
+    let last = ran.report.steps.last().and_then(|step| step.balance.clone()).expect("a balance");
+    let forces = &last.unknowns[0].forces;
+    (0..3).for_each(|c| assert_close(forces.elements[c], -forces.loads[c], 1e-9, "balance"));
+    for (stiffness, code) in [(json!([1.0, -1.0, 0.0]), "out-of-range"), (json!([0.0, 0.0, 0.0]), "out-of-range")] {
+        let mut deck = Deck::new(
+            &grid,
+            "SmallDisplacementElement",
+            "LinearElastic3DLaw",
+            json!({"YOUNG_MODULUS": 1.0, "POISSON_RATIO": 0.3}),
+        );
+        let part = name(&mut deck, |_| true);
+        deck.process("assign_ground_springs_process", json!({"model_part_name": part, "stiffness": stiffness}));
+        let said = deck.problem();
+        assert!(said.contains(code), "{said}");
+    }
+}

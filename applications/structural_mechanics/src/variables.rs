@@ -11,6 +11,7 @@ register_variable! {
     pub MIDDLE_VELOCITY: [f64; 3] = "Velocity half a step after VELOCITY, in explicit integration (length per time).";
     pub FORCE_RESIDUAL: [f64; 3] = "External minus internal forces that explicit integration accelerates (force).";
     pub POINT_LOAD: [f64; 3] = "Force on a point (force).";
+    pub GROUND_STIFFNESS: [f64; 3] = "Stiffness of springs between a node and the ground along the axes (force per length).";
     pub RESULTANT_LOAD: [f64; 3] = "Share of a node in a load that is given by its resultant (force).";
     pub LINE_LOAD: [f64; 3] = "Force per present length of a line (force per length).";
     pub SURFACE_LOAD: [f64; 3] = "Force per present area of a surface (force per area).";

@@ -5,6 +5,7 @@
 //! tangent, being of the order of the strain. Pressure follows the surface, and its tangent is exact.
 
 mod geometry_only;
+mod ground_spring;
 mod line_load;
 mod load;
 mod point_load;
@@ -14,6 +15,7 @@ mod surface_load;
 mod tests;
 
 pub use geometry_only::GeometryOnly;
+pub use ground_spring::GroundSpring;
 pub use line_load::{LineLoad, SpatialLineLoad};
 pub use load::{AtStart, Distributed, DistributedLoad};
 pub use point_load::PointLoad;

@@ -8,13 +8,13 @@ use std::ops::Range;
 
 use zelus_core::assembly::System;
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
-use zelus_core::entities::require_kind;
-use zelus_core::model::{EntityRole, Model, ModelPart};
+use zelus_core::model::{Model, ModelPart};
 use zelus_core::parameters::{Settings, SpaceTime};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, ScalarValue, Target, check_unknowns};
 use zelus_core::register;
 use zelus_core::vector3::dot;
 
+use super::nodal_conditions::add_conditions;
 use super::resultant::Resultant;
 use crate::variables::{DISPLACEMENT, RESULTANT_LOAD};
 
@@ -131,31 +131,21 @@ impl DistributeLoad {
 impl Process for DistributeLoad {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root_mut(&self.target.path)?;
-        let kind = require_kind(EntityRole::Condition, &format!("ResultantLoadCondition{}D1N", part.info.domain_size))?;
-        // Every rank has all nodes of the part, so that all make the same conditions, with the same ids.
-        let largest = part.ranks.gather_numbers(&[part.conditions.max_id() as f64]).concat();
-        let next = largest.into_iter().fold(0.0, f64::max) as usize + 1;
-        let properties = part.properties.keys().next().copied().unwrap_or(0);
-        let first = part.conditions.len();
-        for (id, node) in (next..).zip(self.resultant.nodes()) {
-            part.conditions.push(id, kind, properties, &[node]);
-        }
-        part.conditions.finish();
-        self.made = first..part.conditions.len();
-        part.tree.conditions.extend(self.made.start as u32..self.made.end as u32);
-        part.tree.normalise();
-        if let Some(share) = &mut part.share {
-            let owners: Vec<u32> = self.resultant.nodes().map(|node| share.owners[node as usize]).collect();
-            share.whole.conditions += owners.len();
-            share.conditions.extend(owners);
-        }
+        let nodes: Vec<u32> = self.resultant.nodes().collect();
+        self.made = add_conditions(part, "ResultantLoadCondition", &nodes)?;
         Ok(())
     }
 
-    fn check(&self, model: &Model, system: &System, _warnings: &mut Report) -> Result<()> {
+    fn check(&self, model: &Model, system: &System, warnings: &mut Report) -> Result<()> {
         let part = model.root(&self.target.path)?;
         let unknowns = self.resultant.nodes().map(|node| (node, DISPLACEMENT.component(0)));
         check_unknowns(part, system, unknowns, &self.target.place)?;
+        if !self.resultant.by_area {
+            let count = self.resultant.nodes().len();
+            let fact = format!("{} has no lines or surfaces: its {count} nodes take equal shares", self.target.path);
+            let note = Diagnostic::note("equal-shares", fact).at(self.target.place.clone());
+            warnings.push(note.remedy("name a part with conditions to spread the load by area"));
+        }
         self.forces(self.target.interval.begin.max(1.0).min(self.target.interval.end)).map(drop)
     }
 

@@ -2,7 +2,9 @@
 
 mod outward_faces;
 mod resultant;
+mod nodal_conditions;
 mod distribute_load_on_surface_process;
 mod assign_displacement_along_direction_process;
+mod assign_ground_springs_process;
 mod impose_rigid_movement_process;
 mod sprism_process;

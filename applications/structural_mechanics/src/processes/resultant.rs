@@ -24,6 +24,8 @@ pub(super) struct Resultant {
     nodes: Vec<(u32, f64, [f64; 3])>,
     /// Area, length or number of points.
     pub area: f64,
+    /// Whether it is an area or a length.
+    pub by_area: bool,
     /// Its centre.
     pub centre: [f64; 3],
     /// Eigenvalues and unit eigenvectors of J.
@@ -75,7 +77,7 @@ impl Resultant {
                 }
             }
         }
-        Self { nodes, area, centre, principal: principal(inertia) }
+        Self { nodes, area, by_area: dim.is_some_and(|dim| dim > 0), centre, principal: principal(inertia) }
     }
 
     /// The nodes, ascending.
