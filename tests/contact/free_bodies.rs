@@ -162,10 +162,12 @@ fn steps_that_only_scale_are_cut_once() {
 const WIDTH: f64 = 1.0;
 const SLOPE: f64 = 0.04;
 const PRESSURE: f64 = 1.0;
-/// Young's modulus, so that the block hardly deforms: strains are 1e-5.
+/// Young's modulus by which strains are 1e-5.
 const STIFF: f64 = 1e5;
-/// Iterations of the step at most.
+/// Iterations of the step at most, where the block is close to the table.
 const MOST: usize = 10;
+/// Iterations at most where it falls by six facets.
+const MOST_OF_FALL: usize = 30;
 
 /// A block whose lower side rises by [`SLOPE`] to the right, above a table.
 #[derive(Debug, Clone, Copy)]
@@ -175,6 +177,8 @@ struct Wedge {
     quadratic: bool,
     triangles: bool,
     gap: f64,
+    /// Young's modulus, so large that the block hardly deforms.
+    young: f64,
 }
 
 impl Wedge {
@@ -202,7 +206,7 @@ impl Wedge {
         let guided = [json!(0.0), Value::Null, Value::Null];
         let supports = vec![("Base".to_owned(), still), ("Guide".to_owned(), guided)];
         let nodes = own.0.clone();
-        let deck = Deck { mesh, joint: Joint::Frictionless, supports, pressure: PRESSURE, young: STIFF, steps: 1 };
+        let deck = Deck { mesh, joint: Joint::Frictionless, supports, pressure: PRESSURE, young: self.young, steps: 1 };
         deck.write(folder, |deck| {
             deck["solver_settings"]["contact_settings"] = json!({"mortar_type": "ALMContactFrictionless"});
             deck["solver_settings"]["residual_relative_tolerance"] = json!(1e-6);
@@ -232,15 +236,27 @@ impl Wedge {
 }
 
 /// ANALYTIC. A block that one corner touches, or nothing, tilts under its load until it lies flat: its lower side moves by minus its
-/// height above the table, up to strains of 1e-5, and the table carries the load. The first tangent is singular.
+/// height above the table, up to its strains, and the table carries the load. The first tangent is singular.
 #[test]
 fn a_wedge_tilts_until_it_lies_flat() {
     for (cells, quadratic, triangles) in [([6, 7], false, false), ([12, 15], false, true), ([5, 6], true, false)] {
         for gap in [0.0, 1e-6, 0.01] {
-            let wedge = Wedge { cells, quadratic, triangles, gap };
+            let wedge = Wedge { cells, quadratic, triangles, gap, young: STIFF };
             let attempts = wedge.must_lie_flat();
             println!("{wedge:?}: {attempts:?} iterations");
             assert!(attempts.len() == 1 && attempts[0] <= MOST, "{wedge:?}: {attempts:?} iterations");
         }
+    }
+}
+
+/// ANALYTIC. A block above the table by more than the search radius falls on it, however stiff it is for its load: pairs are searched
+/// for on its way.
+#[test]
+fn a_wedge_far_above_the_table_falls_on_it() {
+    for young in [STIFF, 1e9] {
+        let wedge = Wedge { cells: [6, 7], quadratic: false, triangles: false, gap: 1.0, young };
+        let attempts = wedge.must_lie_flat();
+        println!("{wedge:?}: {attempts:?} iterations");
+        assert!(attempts.len() == 1 && attempts[0] <= MOST_OF_FALL, "{wedge:?}: {attempts:?} iterations");
     }
 }

@@ -60,9 +60,9 @@ struct Row {
 /// ```
 /// use zelus_core::model::{SupportedComponent, reduce_supports};
 ///
-/// // A roller on a slope of 3 : 4.
+/// // A roller on a slope of 3 : 4, along a multiple of its normal.
 /// let free = [SupportedComponent::Free; 3];
-/// let reduced = reduce_supports(&[([0.6, 0.8, 0.0], Some(0.4))], free, 2).unwrap();
+/// let reduced = reduce_supports(&[([0.75, 1.0, 0.0], Some(0.5))], free, 2).unwrap();
 /// assert_eq!(reduced, [Some((1, vec![(0, -0.75)], 0.5))]);
 /// ```
 ///
