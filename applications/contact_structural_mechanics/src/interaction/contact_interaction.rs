@@ -380,10 +380,12 @@ impl ActiveSet for ContactInteraction {
             (self.contact.setup.settings.adaptation, self.contact.setup.settings.explicit.is_some());
         let gaps = adaptation.gaps(&self.contact.states, explicit);
         self.contact.integrate(part);
-        // A body that nothing restrains yet moves on to where no pairs are.
-        let length =
-            activation::stabilization_length(part, &self.contact.states, &self.contact.pairing.slaves_by_interface());
-        let moved = self.loops.step_search.has_moved(part, &self.contact.pairing.nodes(), length);
+        // A body that nothing restrains yet moves on to where no pairs are; explicit steps do not iterate.
+        let moved = !explicit && {
+            let (pairing, states) = (&self.contact.pairing, &self.contact.states);
+            let length = activation::stabilization_length(part, states, &pairing.slaves_by_interface());
+            self.loops.step_search.has_moved(part, &pairing.nodes(), length)
+        };
         if iteration <= SETTLED || moved {
             let (contact, searched) = ((&self.contact.pairing, &self.contact.states), self.contact.is_searched());
             let missed = self.loops.step_search.on_the_way(part, contact, &self.contact.setup, searched)?;
