@@ -42,3 +42,4 @@ mod thread_ranks;
 mod units;
 mod penetration_check;
 mod wear;
+mod whole_skin;

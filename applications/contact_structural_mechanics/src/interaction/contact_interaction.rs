@@ -387,6 +387,7 @@ impl ActiveSet for ContactInteraction {
             self.loops.step_search.has_moved(part, &pairing.nodes(), length)
         };
         if iteration <= SETTLED || moved {
+            self.contact.extend_open_roles(part)?;
             let (contact, searched) = ((&self.contact.pairing, &self.contact.states), self.contact.is_searched());
             let missed = self.loops.step_search.on_the_way(part, contact, &self.contact.setup, searched)?;
             if !missed.is_empty() {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
-use zelus_core::model::ModelPart;
+use zelus_core::model::{ModelPart, bodies_of_nodes};
 use zelus_core::{Result, StateMapper};
 
 use crate::active_set::activation::{self, ActivationCriterion};
@@ -16,7 +16,7 @@ use crate::pairing::{Pairing, PairingState, integrate, take_normals_of_masters};
 use crate::pairs::Pair;
 use crate::results::{InterfaceSurfaces, write_states};
 use crate::safeguards::settle_all;
-use crate::search::{GapCheck, assign_roles};
+use crate::search::{GapCheck, OpenSides, Renewal, assign_roles, farthest_motion};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::{SlaveStates, multiplier_columns, owners_name, write_status};
 use crate::tolerances::Tolerances;
@@ -187,13 +187,17 @@ impl ContactState {
         }
     }
 
-    /// Self contact: each search decides which facets are slaves.
-    fn assign_open_roles(&mut self, part: &mut ModelPart) {
+    /// Open sides: each search decides which facets are slaves.
+    fn assign_open_roles(&mut self, part: &mut ModelPart, renewal: Renewal) -> bool {
         if self.pairing.interfaces.iter().all(|i| !i.open) {
-            return;
+            return false;
         }
-        for interface in self.pairing.interfaces.iter_mut().filter(|i| i.open) {
-            assign_roles(part, interface, &self.setup.settings.search);
+        let bodies = bodies_of_nodes(part);
+        let Pairing { interfaces, patches, .. } = &mut self.pairing;
+        let mut changed = false;
+        for (at, interface) in interfaces.iter_mut().enumerate().filter(|(_, interface)| interface.open) {
+            let known = OpenSides { bodies: &bodies, patches, interface: at as u32 };
+            changed |= assign_roles(part, interface, &known, &self.setup.settings.search, renewal);
             let slaves = interface.nodes_of(Roles::Slave);
             for &node in &interface.nodes {
                 let is_slave = slaves.binary_search(&node).is_ok();
@@ -201,12 +205,30 @@ impl ContactState {
                 part.nodes.flags.set(MASTER, node as usize, !is_slave);
             }
         }
+        if !changed && renewal == Renewal::Open {
+            return false;
+        }
         self.states.set_slaves(self.pairing.slaves());
         let (all, multiplier) = (self.states.all(), self.setup.settings.formulation.multiplier);
         activation::clear_inactive(&mut part.slave_nodes, &mut self.states, multiplier, all);
         self.pairing.find_normal_patches(self.supported_nodes.planes());
         write_nodal_normals(part, &self.pairing, &self.supported_nodes);
         self.states.take_normals(&self.pairing.normals, &part.nodes.current);
+        true
+    }
+
+    /// Within a step: gives facets that have come to face each other sides, where a deck leaves them open. Collective.
+    ///
+    /// # Errors
+    /// Errors of making blocks.
+    pub(super) fn extend_open_roles(&mut self, part: &mut ModelPart) -> Result<()> {
+        let settings = &self.setup.settings;
+        let moved = farthest_motion(part, &self.pairing.nodes()) > self.setup.tolerances.length;
+        let looks = settings.solver.feature_angle.is_some() && settings.explicit.is_none();
+        if looks && part.ranks.any(moved) && self.assign_open_roles(part, Renewal::Open) {
+            self.take_in(part, Vec::new())?;
+        }
+        Ok(())
     }
 
     /// Sets the multipliers of slave nodes without contact to zero.
@@ -292,7 +314,7 @@ impl ContactState {
         self.find_normals(part);
         self.steps_since_search = self.steps_since_search.saturating_add(1);
         if self.steps_since_search >= self.setup.settings.database_step_update {
-            self.assign_open_roles(part);
+            self.assign_open_roles(part, Renewal::All);
             let warning = self.pairing.search(part, &self.states, &self.setup)?;
             self.messages.extend(warning);
             self.steps_since_search = 0;

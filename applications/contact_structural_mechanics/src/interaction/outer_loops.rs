@@ -97,6 +97,7 @@ impl OuterLoops {
         if settled != OuterLoop::Done {
             return Ok(settled);
         }
+        contact.extend_open_roles(part)?;
         let (pairs, searched) = ((&contact.pairing, &contact.states), contact.is_searched());
         let (missed, outer) =
             self.step_search.in_converged_state(part, pairs, &contact.setup, searched, &mut contact.messages)?;

@@ -264,10 +264,10 @@ fn nodes_on<'a>(facet: &'a Facet, edge: &'a [u32]) -> impl Iterator<Item = u32> 
     edge.iter().chain(between).copied()
 }
 
-/// Nodes of the master facets of an interface on these edges, ascending. Collective.
+/// Nodes of the facets of an interface that are or may be masters on these edges, ascending. Collective.
 fn nodes_of_edges(part: &ModelPart, interface: &Interface, sharp: &FxHashSet<Vec<u32>>) -> Vec<u32> {
     let mut at_edge = vec![false; interface.nodes.len()];
-    for facet in interface.facets.iter().filter(|facet| facet.role == Roles::Master) {
+    for facet in interface.facets.iter().filter(|facet| facet.role != Roles::Slave) {
         for node in edges(facet.corners()).into_iter().filter(|edge| sharp.contains(edge)).flatten() {
             at_edge[interface.nodes.binary_search(&node).expect("a node of the interface")] = true;
         }

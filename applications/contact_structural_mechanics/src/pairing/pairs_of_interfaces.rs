@@ -23,12 +23,11 @@ use crate::pairs::{
     ContactBlock, Integral, IntegrationState, PAIRS, Pair, PairKey, PairRequest, check_pairs, condition_name,
     group_by_shapes, group_by_surroundings,
 };
-use crate::search::{Candidate, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_search_radius};
+use crate::search::{
+    Candidate, FACING, GapCheck, candidates, predicted_positions, touching_nodes, warn_of_search_radius,
+};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::{SlaveStates, SlaveSums, SlaveTable};
-
-/// Cosine of the angle between normals beyond which facets do not face each other, 84°.
-const FACING: f64 = 0.1;
 
 /// Pairs of facets and the blocks that evaluate them.
 pub(crate) struct Pairing {

@@ -5,12 +5,11 @@ use std::collections::BTreeSet;
 use zelus_core::Result;
 use zelus_core::model::ModelPart;
 use zelus_core::parallel;
-use zelus_core::vector3::{add, dot, norm, sub};
-use zelus_structural_mechanics::variables::DISPLACEMENT;
 
-use crate::interface::{Facet, SlaveIndex};
+use crate::interface::SlaveIndex;
 use crate::pairing::{Pairing, integrals, searching};
 use crate::pairs::{PAIRS, Pair, PairKey};
+use crate::search::have_crossed;
 use crate::settings::Setup;
 use crate::slave_nodes::{SlaveStates, SlaveSums, Summands};
 use crate::tolerances::Tolerances;
@@ -145,29 +144,4 @@ pub(crate) fn missed_pairs(
         missed: [crossed, rest].concat(),
         nodes: nodes.into_iter().map(|slave| states.mesh_node(slave)).collect(),
     })
-}
-
-/// Whether the centre of the slave has gone from the front of the master's plane to its back in the step.
-fn have_crossed(part: &ModelPart, slave: &Facet, master: &Facet) -> bool {
-    let height = |position: &dyn Fn(u32) -> [f64; 3]| {
-        let positions = |facet: &Facet| -> Vec<[f64; 3]> { facet.nodes.iter().map(|&n| position(n)).collect() };
-        let centre = |x: &[[f64; 3]]| std::array::from_fn(|c| x.iter().map(|x| x[c]).sum::<f64>() / x.len() as f64);
-        let (slave, master_at) = (positions(slave), positions(master));
-        let normal = master.normal_at(&master_at);
-        dot(sub(centre(&slave), centre(&master_at)), normal)
-    };
-    height(&|n| step_start(part, n)) > 0.0 && height(&|n| part.nodes.current[n as usize]) < 0.0
-}
-
-/// Where a node was when the step began.
-pub(crate) fn step_start(part: &ModelPart, node: u32) -> [f64; 3] {
-    let initial = part.nodes.initial[node as usize];
-    let Some(field) = part.nodes.history.get(DISPLACEMENT.name()) else { return initial };
-    add(initial, field.vector(1.min(field.levels.len() - 1), node as usize))
-}
-
-/// How far the farthest of `nodes` has moved in the step (length).
-pub(crate) fn farthest_motion(part: &ModelPart, nodes: &[u32]) -> f64 {
-    let motion = |&n: &u32| norm(sub(part.nodes.current[n as usize], step_start(part, n)));
-    nodes.iter().map(motion).fold(0.0, f64::max)
 }

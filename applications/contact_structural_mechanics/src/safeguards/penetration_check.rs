@@ -5,9 +5,8 @@ use zelus_core::geometry::mapping::local_coordinates;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{add, dot, norm, scale, sub};
 
-use super::missed_pairs::{farthest_motion, step_start};
 use crate::interface::{Facet, Interface, Roles};
-use crate::search::{Bounds, Tree, inside};
+use crate::search::{Bounds, Tree, farthest_motion, inside, step_start};
 use crate::variables::NODAL_H;
 
 /// Share of the largest depth by which nodes may move until they are checked again.

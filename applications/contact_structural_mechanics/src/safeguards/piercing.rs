@@ -7,7 +7,7 @@ use zelus_core::vector3::{dot, sub};
 
 use crate::interface::{Facet, Roles};
 use crate::pairing::Pairing;
-use crate::search::{Bounds, Tree};
+use crate::search::{Bounds, FACING, Tree};
 use crate::slave_nodes::SlaveStates;
 use crate::variables::NODAL_H;
 
@@ -18,8 +18,6 @@ const HIDDEN: f64 = 0.05;
 /// Cosine of the least angle between the faces at a corner and the facet. Under a face that lies flat on the slave its nodes see
 /// all of the gap.
 const FLAT: f64 = 0.996;
-/// Cosine of the angle from which on faces do not press on each other.
-const FACING: f64 = 0.1;
 /// Share of a facet beside its edges in which a corner is left to its neighbours.
 const EDGE: f64 = 0.05;
 
@@ -30,7 +28,7 @@ const EDGE: f64 = 0.05;
 pub(crate) fn pierced(part: &ModelPart, pairing: &Pairing, states: &SlaveStates) -> Option<String> {
     for (at, interface) in pairing.interfaces.iter().enumerate() {
         let corners = pairing.patches.master_edges(at);
-        if interface.open || corners.is_empty() {
+        if corners.is_empty() {
             continue;
         }
         let of_role = |role: Roles| interface.facets.iter().enumerate().filter(move |(_, facet)| facet.role == role);

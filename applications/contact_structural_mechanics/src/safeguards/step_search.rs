@@ -7,10 +7,10 @@ use zelus_core::entities::OuterLoop;
 use zelus_core::model::ModelPart;
 use zelus_core::vector3::{norm, sub};
 
-use super::missed_pairs::{FoundPairs, SearchThresholds, farthest_motion, missed_pairs};
+use super::missed_pairs::{FoundPairs, SearchThresholds, missed_pairs};
 use crate::pairing::Pairing;
 use crate::pairs::Pair;
-use crate::search::{WithinStep, warn_of_missed_pairs};
+use crate::search::{WithinStep, farthest_motion, warn_of_missed_pairs};
 use crate::settings::Setup;
 use crate::slave_nodes::SlaveStates;
 

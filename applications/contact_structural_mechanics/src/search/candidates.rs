@@ -12,7 +12,7 @@ use crate::interface::{Facet, Interface, Roles};
 pub(super) const AT_A_TIME: usize = 64;
 
 /// Radii within which circles count as meeting.
-const SLACK: f64 = 1.1;
+pub(super) const SLACK: f64 = 1.1;
 
 /// How a search decides which slave nodes start the step in contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
