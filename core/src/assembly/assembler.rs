@@ -44,7 +44,7 @@ use self::inertia_matrices::InertiaMatrices;
 use self::load_tangent::LoadTangent;
 use self::parallel_layout::ParallelLayout;
 use self::reduced_matrix::ReducedMatrix;
-use self::stamps::Stamps;
+use self::stamps::{Stamps, WHOLE};
 use self::step_equations::StepEquations;
 use super::equations::Equations;
 use super::system::System;
@@ -165,7 +165,10 @@ impl Assembler {
     /// Lets `solve` have the same system as [`WholeSystem`], without a second copy of the matrix.
     pub fn with_whole<T>(&mut self, solve: impl FnOnce(&Self, WholeSystem<'_>) -> T) -> T {
         self.bulk.lend_values();
-        let system = self.system_of(self.equations.whole(), self.bulk.matrix(), self.coupling.matrix());
+        let mut system = self.system_of(self.equations.whole(), self.bulk.matrix(), self.coupling.matrix());
+        // Solvers may change from one form to the other: what they keep of the one is not that of the other.
+        system.bulk_graph += WHOLE;
+        system.coupling_graph += WHOLE;
         let solved = solve(self, WholeSystem { system, loads: self.loads.nonzero() });
         self.bulk.return_values();
         solved

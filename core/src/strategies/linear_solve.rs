@@ -93,10 +93,10 @@ pub(super) fn solve(
     let is_here = assembler.numbering().is_none();
     if is_here && assembler.has_whole() && solver.takes_inactive_rows(assembler.equations().len(), assembler.entries())
     {
-        let (rhs, stamps) = (assembler.equations().expand(rhs), assembler.merged_stamps());
+        let (rhs, merged) = (assembler.equations().expand(rhs), assembler.merged_values());
         let dof_name = |number: usize| Some(DofName::of(dofs, nodes, number as u32));
         let (increment, report) =
-            assembler.with_whole(|_, whole| solve_here(&whole.system, whole.loads, stamps, solver, &rhs, &dof_name))?;
+            assembler.with_whole(|_, whole| solve_here(&whole.system, whole.loads, merged, solver, &rhs, &dof_name))?;
         return Ok((assembler.equations().reduce(&increment), report));
     }
     if is_here {
@@ -104,7 +104,7 @@ pub(super) fn solve(
         let (loads, system) = (assembler.load_tangents().cloned(), assembler.system());
         let unknowns = assembler.equations().unknowns();
         let dof_name = |equation: usize| unknowns.get(equation).map(|&number| DofName::of(dofs, nodes, number));
-        return solve_here(&system, loads.as_ref(), assembler.merged_stamps(), solver, rhs, &dof_name);
+        return solve_here(&system, loads.as_ref(), assembler.merged_values(), solver, rhs, &dof_name);
     }
     let mut why = None;
     if !root_gather.has_petsc() && is_shared(assembler, solver) {
@@ -125,10 +125,10 @@ pub(super) fn solve(
     let rhs = root_gather.gather(ranks, rhs, numbering);
     let (whole, loads) = root_gather.system(&system);
     let solved = if ranks.is_root() {
-        let stamps = assembler.merged_stamps();
+        let merged = assembler.merged_values();
         let dof_names = root_gather.dof_names();
         root_gather.while_others_wait(|| {
-            solve_here(&whole, loads, stamps, solver, &rhs, &|equation| dof_names.get(equation).copied())
+            solve_here(&whole, loads, merged, solver, &rhs, &|equation| dof_names.get(equation).copied())
         })
     } else {
         Ok((Vec::new(), elsewhere()))
@@ -207,11 +207,11 @@ fn elsewhere() -> SolveReport {
 ///
 /// Follower loads make the tangent slightly unsymmetric. Engines that do not mind take them with the coupling. For others the
 /// factorised rest serves as the preconditioner of a stationary
-/// iteration; when their tangents are too large for it, they are merged into the matrix, which then has `merged_stamps`.
+/// iteration; when their tangents are too large for it, they are merged into the matrix, whose values then have the stamp `merged`.
 fn solve_here(
     system: &System<'_>,
     loads: Option<&Csr>,
-    merged_stamps: [u64; 2],
+    merged: u64,
     solver: &mut dyn LinearSolver,
     rhs: &[f64],
     dof_name: DofNames<'_>,
@@ -222,11 +222,10 @@ fn solve_here(
         && solver.takes_loads(system)
     {
         let coupling = system.coupling.map_or_else(|| loads.clone(), |coupling| coupling.plus(loads));
-        let [graph, values] = merged_stamps;
         let whole = System {
             coupling: Some(&coupling),
-            coupling_graph: graph,
-            coupling_values: values,
+            coupling_graph: u64::MAX - system.bulk_graph,
+            coupling_values: merged,
             coupling_symmetric: false,
             ..*system
         };
@@ -261,12 +260,11 @@ fn solve_here(
         return Ok((increment, report));
     }
     let bulk: Csr = system.bulk.plus(loads);
-    let [bulk_graph, bulk_values] = merged_stamps;
     let whole = System {
         bulk: &bulk,
         bulk_symmetry: zelus_linear_algebra::Symmetry::General,
-        bulk_graph,
-        bulk_values,
+        bulk_graph: u64::MAX - system.bulk_graph,
+        bulk_values: merged,
         ..*system
     };
     increment.fill(0.0);

@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+/// Addend of the stamps of graphs where unknowns are taken for equations.
+pub(super) const WHOLE: u64 = 1 << 33;
+
 /// Counts of the changes of graphs and values; a saved run holds them.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub(super) struct Stamps {

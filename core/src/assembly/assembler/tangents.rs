@@ -76,10 +76,10 @@ impl Assembler {
         self.loads.reduce(self.equations.map())
     }
 
-    /// Stamps of graph and values of the bulk with the load tangents merged into it.
+    /// Stamp of the values of the bulk with the load tangents merged into it.
     ///
     /// No bulk without them has the same, and the values count as new after each call of [`Assembler::tangents`].
-    pub fn merged_stamps(&self) -> [u64; 2] {
-        [u64::MAX - self.stamps.bulk_graph, u64::MAX - self.stamps.tangents]
+    pub fn merged_values(&self) -> u64 {
+        u64::MAX - self.stamps.tangents
     }
 }
