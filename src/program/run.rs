@@ -45,7 +45,8 @@ pub(super) fn run(arguments: &RunArguments, ranks: &Ranks, ran: &mut bool) -> Re
     };
     if !ranks.is_root() {
         let mut simulation = Simulation::open(file, &options)?;
-        return drive(&mut simulation, &mut Silent, *resume, &stop).map(|ended| ended.code());
+        let ended = simulation.within_threads(|simulation| drive(simulation, &mut Silent, *resume, &stop));
+        return ended.map(|ended| ended.code());
     }
     let level = match (quiet, verbose) {
         (true, _) => Level::Quiet,
@@ -55,7 +56,10 @@ pub(super) fn run(arguments: &RunArguments, ranks: &Ranks, ran: &mut bool) -> Re
     let log = arguments.log.as_ref().map(|log| Log::begin(log, file)).transpose()?;
     let mut terminal = Terminal::new(level, log);
     let (result, mut run) = match Simulation::open(file, &options) {
-        Ok(mut simulation) => (drive(&mut simulation, &mut terminal, *resume, &stop), simulation.into_report()),
+        Ok(mut simulation) => {
+            let ended = simulation.within_threads(|simulation| drive(simulation, &mut terminal, *resume, &stop));
+            (ended, simulation.into_report())
+        }
         Err(error) => (Err(error), RunReport::default()),
     };
     *ran = !run.steps.is_empty();

@@ -349,7 +349,8 @@ impl Simulation {
     }
 
     /// The report, at the end.
-    pub fn into_report(self) -> RunReport {
+    pub fn into_report(mut self) -> RunReport {
+        self.measure_memory();
         self.report
     }
 
@@ -502,15 +503,26 @@ impl Simulation {
         let ended = stage.finish((result, is_suspended), model, systems, report, self.driver.as_mut());
         self.over = if ended.is_ok() { self.over + 1 } else { self.stages.len() };
         self.report.converged = ended.is_ok() && self.over == self.stages.len();
+        self.measure_memory();
         ended
+    }
+
+    /// Asks the system for the most memory the process has held: a file of the system, which takes as long as a step of a small deck.
+    fn measure_memory(&mut self) {
+        self.report.memory = zelus_linear_algebra::memory::largest().unwrap_or_default();
+    }
+
+    /// Does `work` in the threads of this simulation: steps within it need not be handed over one by one.
+    pub fn within_threads<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> T + Send) -> T {
+        let pool = Arc::clone(&self.pool);
+        pool.run(|| work(self))
     }
 
     /// Does `work` with the threads of this simulation.
     fn timed<T: Send>(&mut self, work: impl FnOnce(&mut Self) -> Result<T> + Send) -> Result<T> {
-        let (start, pool) = (Instant::now(), Arc::clone(&self.pool));
-        let result = pool.run(|| work(self));
+        let start = Instant::now();
+        let result = self.within_threads(work);
         self.report.add_seconds("total", start.elapsed().as_secs_f64());
-        self.report.memory = zelus_linear_algebra::memory::largest().unwrap_or_default();
         result
     }
 }
