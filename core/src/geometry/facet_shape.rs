@@ -150,20 +150,28 @@ impl FacetShape {
 
     /// Shape functions at a local point.
     pub fn values<T: Real>(&self, xi: [T; 2]) -> Nodal<T> {
+        let mut out = Nodal::empty();
+        self.write_values(xi, &mut out);
+        out
+    }
+
+    /// Writes the shape functions at a local point to `out`: with derivatives they are too large to be moved about.
+    pub fn write_values<T: Real>(&self, xi: [T; 2], out: &mut Nodal<T>) {
         let points = self.points;
         match self.shape {
-            Shape::Line2 => Nodal::new(2, |i| product(&points[i], &xi[..1], linear)),
-            Shape::Line3 => Nodal::new(3, |i| product(&points[i], &xi[..1], quadratic)),
-            Shape::Tri3 => Nodal::new(3, |i| barycentric(&xi, i)),
+            Shape::Line2 => out.refill(2, |i| product(&points[i], &xi[..1], linear)),
+            Shape::Line3 => out.refill(3, |i| product(&points[i], &xi[..1], quadratic)),
+            Shape::Tri3 => out.refill(3, |i| barycentric(&xi, i)),
             Shape::Tri6 => {
                 let l: [T; 3] = std::array::from_fn(|i| barycentric(&xi, i));
-                let [a, b, c] = l.map(quadratic_corner);
-                let middle = |i: usize, j: usize| quadratic_middle(l[i], l[j]);
-                [a, b, c, middle(0, 1), middle(1, 2), middle(2, 0)].into()
+                out.refill(
+                    6,
+                    |i| if i < 3 { quadratic_corner(l[i]) } else { quadratic_middle(l[i - 3], l[(i - 2) % 3]) },
+                );
             }
-            Shape::Quad4 => Nodal::new(4, |i| product(&points[i], &xi, linear)),
-            Shape::Quad8 => Nodal::new(8, |i| serendipity(&points[i], &xi)),
-            _ => Nodal::new(9, |i| product(&points[i], &xi, quadratic)),
+            Shape::Quad4 => out.refill(4, |i| product(&points[i], &xi, linear)),
+            Shape::Quad8 => out.refill(8, |i| serendipity(&points[i], &xi)),
+            _ => out.refill(9, |i| product(&points[i], &xi, quadratic)),
         }
     }
 

@@ -50,8 +50,7 @@ mod tests {
             Overlap::Cells(found) => found,
             _ => panic!("they overlap"),
         };
-        let change = at(1e-9).minus(&at(-1e-9));
-        change.m.iter().flat_map(|row| row.iter()).fold(0.0_f64, |most, m| most.max(m.abs()))
+        at(1e-9).norms_of_change(&at(-1e-9))[1]
     }
 
     #[test]

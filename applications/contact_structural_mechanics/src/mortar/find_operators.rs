@@ -7,7 +7,7 @@ use super::geometry::{Active, PairGeometry};
 use super::operators::{Operators, Overlap, overlap_of};
 use super::segmentation_3d::Polygon;
 use super::settings::SegmentationSettings;
-use zelus_core::geometry::interpolate;
+use zelus_core::geometry::{Nodal, interpolate};
 use zelus_core::scalar::{Dual, Real};
 
 /// Computes D and M of a pair: lines in the plane, triangles and quadrilaterals in space; those of second order as `curved` says.
@@ -60,11 +60,13 @@ pub fn find_operators_by_normals(
     }
     let still: PairGeometry<Dual<3>> = pair.as_constants();
     let still = FirstOrderPoints { pair: &still, motion: &EXACT_MOTION };
+    let mut master = Nodal::empty();
     let covered = FirstOrderPoints { pair, motion: &EXACT_MOTION }.visit(settings, &mut |point| {
         let normal = interpolate(&point.slave, &pair.nodal_normals);
         let normal = std::array::from_fn(|c| Dual::variable(normal[c], c));
         let x = interpolate(&point.slave, &pair.slave).map(Dual::constant);
-        out.add_point_by_normals(point, &still.along(normal, x, Dual::zero()), first);
+        still.along(normal, x, Dual::zero(), &mut master);
+        out.add_point_by_normals(point, &master, first);
     });
     out.finish(covered, pair)
 }

@@ -84,16 +84,17 @@ impl<T: Real> FirstOrderPoints<'_, T> {
         let det_j = norm(sub(pair.slave[1], pair.slave[0])) * share;
         let revolution = settings.revolution();
         let rule = ShapeTable::get(LINE_2.shape, settings.integration_order.get());
+        let mut out = OverlapPoint::room();
         for (weights, point) in rule.n::<2>().iter().zip(rule.points()) {
-            let local = [ends[0] * weights[0] + ends[1] * weights[1], T::zero()];
-            let slave = pair.slave_shape.values(local);
-            let x = interpolate(&slave, &pair.slave);
-            let mut weight = det_j * (point.weight / LINE_2.cell_size);
+            out.local = [ends[0] * weights[0] + ends[1] * weights[1], T::zero()];
+            pair.slave_shape.write_values(out.local, &mut out.slave);
+            let x = interpolate(&out.slave, &pair.slave);
+            out.weight = det_j * (point.weight / LINE_2.cell_size);
             if let Some(per_radius) = revolution {
-                weight *= x[0] * per_radius;
+                out.weight *= x[0] * per_radius;
             }
-            let master = self.on_master(&slave, x, T::zero());
-            visit(&OverlapPoint { local, slave, master, weight });
+            self.find_master(x, T::zero(), &mut out);
+            visit(&out);
         }
         det_j.value()
     }
@@ -111,6 +112,7 @@ impl<T: Real> FirstOrderPoints<'_, T> {
         let place = |xi: [T; 2]| interpolate(&shape.values(xi), &pair.slave);
         let rule = ShapeTable::get(TRIANGLE_3.shape, settings.integration_order.get());
         let mut covered = 0.0;
+        let mut out = OverlapPoint::room();
         let vertices = polygon.vertices();
         let mut local = [polygon.local(vertices[0]), [T::zero(); 2], polygon.local(vertices[1])];
         let mut x = [place(local[0]), [T::zero(); 3], place(local[2])];
@@ -128,17 +130,19 @@ impl<T: Real> FirstOrderPoints<'_, T> {
             covered += area.value();
             for (barycentric, point) in rule.n::<3>().iter().zip(rule.points()) {
                 let mut x = combine(barycentric, &x);
-                let mut xi = combine(barycentric, &local);
-                let mut slave = shape.values(xi);
+                out.local = combine(barycentric, &local);
                 if !shape.affine {
                     // Cells are flat and straight in space, a warped quadrilateral and its local coordinates are not.
-                    xi = shape.closest_point(&pair.slave, x, xi.map(T::value));
-                    slave = shape.values(xi);
-                    x = interpolate(&slave, &pair.slave);
+                    out.local = shape.closest_point(&pair.slave, x, out.local.map(T::value));
+                }
+                shape.write_values(out.local, &mut out.slave);
+                if !shape.affine {
+                    x = interpolate(&out.slave, &pair.slave);
                 }
                 let lift = (0..3).fold(T::zero(), |sum, n| sum + lifts[n] * barycentric[n]);
-                let master = self.on_master(&slave, x, lift);
-                visit(&OverlapPoint { local: xi, slave, master, weight: area * (point.weight / TRIANGLE_3.cell_size) });
+                self.find_master(x, lift, &mut out);
+                out.weight = area * (point.weight / TRIANGLE_3.cell_size);
+                visit(&out);
             }
         }
         covered
@@ -148,18 +152,18 @@ impl<T: Real> FirstOrderPoints<'_, T> {
         self.motion.lift().map_or(T::zero(), |lift| polygon.weigh(vertex, lift))
     }
 
-    /// Shape functions of the master where a point of the slave goes along the interpolated normal; `lift` is that of
+    /// Writes the shape functions of the master where a point `x` of the slave goes along the interpolated normal; `lift` is that of
     /// [`MasterMotion`].
-    fn on_master(&self, slave: &[T], x: [T; 3], lift: T) -> Nodal<T> {
-        self.along(interpolate(slave, &self.pair.nodal_normals), x, lift)
+    fn find_master(&self, x: [T; 3], lift: T, point: &mut OverlapPoint<T>) {
+        self.along(interpolate(&point.slave, &self.pair.nodal_normals), x, lift, &mut point.master);
     }
 
-    /// Shape functions of the master where a point `x` of the slave goes along `normal`.
-    pub(super) fn along(&self, normal: [T; 3], x: [T; 3], lift: T) -> Nodal<T> {
+    /// Writes the shape functions of the master where a point `x` of the slave goes along `normal`.
+    pub(super) fn along(&self, normal: [T; 3], x: [T; 3], lift: T, out: &mut Nodal<T>) {
         let pair = self.pair;
         let distance = dot(sub(pair.master[0], x), pair.master_normal) / dot(normal, pair.master_normal);
         let mut projected = x;
         (0..3).for_each(|c| projected[c].add_product(normal[c], distance));
-        pair.master_shape.values(self.motion.local(pair.master_shape, &pair.master, projected, x, lift))
+        pair.master_shape.write_values(self.motion.local(pair.master_shape, &pair.master, projected, x, lift), out);
     }
 }

@@ -20,6 +20,10 @@ pub fn weighted_gap<T: Real>(
 /// (D x¹ − M x²)_j, taken relative to a slave node so that a far origin costs no digits.
 pub fn weighted_jump<T: Real>(operators: &Operators<T>, slave: &[[T; 3]], master: &[[T; 3]]) -> Nodal<[T; 3]> {
     let origin = value(slave[0]);
-    let relative = |x: [T; 3]| std::array::from_fn(|c| x[c] - origin[c]);
-    operators.jump(&Nodal::of(slave).map(relative), &Nodal::of(master).map(relative))
+    operators.jump(&relative(slave, origin), &relative(master, origin))
+}
+
+/// Positions as they are seen from an origin.
+pub(super) fn relative<T: Real>(places: &[[T; 3]], origin: [f64; 3]) -> Nodal<[T; 3]> {
+    Nodal::new(places.len(), |n| std::array::from_fn(|c| places[n][c] - origin[c]))
 }

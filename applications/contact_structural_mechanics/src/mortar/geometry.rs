@@ -61,33 +61,42 @@ impl PairGeometry<f64> {
     /// variation.
     pub fn seeded_from(&self, first: usize) -> PairGeometry<Active> {
         let (dim, masters) = (self.space(), self.master.len());
-        PairGeometry {
-            slave: Nodal::new(self.slave.len(), |n| variables_from(first, dim * (masters + n), self.slave[n], dim)),
-            master: Nodal::new(masters, |n| variables_from(first, dim * n, self.master[n], dim)),
-            ..self.as_constants()
+        let mut out = self.as_constants();
+        for (n, place) in out.master.iter_mut().chain(out.slave.iter_mut()).enumerate() {
+            let values = if n < masters { self.master[n] } else { self.slave[n - masters] };
+            *place = variables_from(first, dim * n, values, dim);
         }
+        out
     }
 
     /// The same pair with [`LANES`] components of its nodal normals as variables, from the one numbered `first` on, node by node.
     pub fn seeded_by_normals(&self, first: usize) -> PairGeometry<Active> {
         let dim = self.space();
-        let normal = |j: usize| variables_from(first, dim * j, self.nodal_normals[j], dim);
-        PairGeometry { nodal_normals: Nodal::new(self.slave.len(), normal), ..self.as_constants() }
+        let mut out = self.as_constants();
+        for (j, (normal, values)) in out.nodal_normals.iter_mut().zip(self.nodal_normals.iter()).enumerate() {
+            *normal = variables_from(first, dim * j, *values, dim);
+        }
+        out
     }
 
     /// The same pair in another scalar, without derivatives.
     #[inline]
     pub fn as_constants<T: Real>(&self) -> PairGeometry<T> {
-        PairGeometry {
+        let mut out = PairGeometry {
             slave_shape: self.slave_shape,
             master_shape: self.master_shape,
-            slave: self.slave.map(constant),
-            master: self.master.map(constant),
-            nodal_normals: self.nodal_normals.map(constant),
+            slave: Nodal::empty(),
+            master: Nodal::empty(),
+            nodal_normals: Nodal::empty(),
             slave_normal: constant(self.slave_normal),
             master_normal: constant(self.master_normal),
             choices: self.choices,
-        }
+        };
+        // In place: with derivatives they are too large to be moved about.
+        out.slave.refill(self.slave.len(), |n| constant(self.slave[n]));
+        out.master.refill(self.master.len(), |n| constant(self.master[n]));
+        out.nodal_normals.refill(self.nodal_normals.len(), |n| constant(self.nodal_normals[n]));
+        out
     }
 }
 

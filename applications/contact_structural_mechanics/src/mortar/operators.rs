@@ -116,21 +116,17 @@ impl<T: Real> Operators<T> {
         self.as_constants()
     }
 
-    /// Frobenius norms of D and M.
+    /// Frobenius norms of the values of D and M.
     pub fn norms(&self) -> [f64; 2] {
-        let values = self.values();
-        [frobenius(&values.d), frobenius(&values.m)]
+        [&self.d, &self.m].map(|rows| frobenius(rows.iter().flat_map(|row| row.iter().map(|x| x.value()))))
     }
 
-    /// The change since the operators `previous`.
-    pub fn minus(&self, previous: &Operators<f64>) -> Self {
-        let mut out = *self;
-        for (rows, before) in [(&mut out.d, &previous.d), (&mut out.m, &previous.m)] {
-            rows.iter_mut().zip(before.iter()).for_each(|(row, before)| {
-                row.iter_mut().zip(before.iter()).for_each(|(x, before)| *x -= *before);
-            });
-        }
-        out
+    /// Frobenius norms of the change of D and M since `previous`.
+    pub fn norms_of_change(&self, previous: &Operators<f64>) -> [f64; 2] {
+        [(&self.d, &previous.d), (&self.m, &previous.m)].map(|(rows, before)| {
+            let entries = rows.iter().zip(before.iter()).flat_map(|(row, before)| row.iter().zip(before.iter()));
+            frobenius(entries.map(|(x, before)| x.value() - before))
+        })
     }
 
     /// Whether all entries are numbers.
@@ -145,15 +141,32 @@ impl<T: Real> Operators<T> {
 
     /// (D v¹ − M v²)_j, the weighted jump of a nodal vector field across the pair.
     pub fn jump(&self, slave: &[[T; 3]], master: &[[T; 3]]) -> Nodal<[T; 3]> {
+        self.jump_of(slave, master, &|_, _| [0.0; 2])
+    }
+
+    /// ((D − D°) v¹ − (M − M°) v²)_j with the operators `previous`.
+    pub fn jump_since(&self, previous: &Operators<f64>, slave: &[[T; 3]], master: &[[T; 3]]) -> Nodal<[T; 3]> {
+        let entry = |rows: &Nodal<Nodal<f64>>, j: usize, k: usize| rows[j].get(k).copied().unwrap_or(0.0);
+        self.jump_of(slave, master, &|j, k| [entry(&previous.d, j, k), entry(&previous.m, j, k)])
+    }
+
+    /// The jump by D and M less the entries in a row and column that `without` gives.
+    #[inline(always)]
+    fn jump_of(
+        &self,
+        slave: &[[T; 3]],
+        master: &[[T; 3]],
+        without: &impl Fn(usize, usize) -> [f64; 2],
+    ) -> Nodal<[T; 3]> {
         Nodal::new(self.d.len(), |j| {
             let mut sum = [T::zero(); 3];
-            for c in 0..3 {
-                for (d, v) in self.d[j].iter().zip(slave) {
-                    sum[c].add_product(*d, v[c]);
-                }
-                for (m, v) in self.m[j].iter().zip(master) {
-                    sum[c].add_product(-*m, v[c]);
-                }
+            for (k, (d, v)) in self.d[j].iter().zip(slave).enumerate() {
+                let d = *d - without(j, k)[0];
+                (0..3).for_each(|c| sum[c].add_product(d, v[c]));
+            }
+            for (l, (m, v)) in self.m[j].iter().zip(master).enumerate() {
+                let m = *m - without(j, l)[1];
+                (0..3).for_each(|c| sum[c].add_product(-m, v[c]));
             }
             sum
         })
@@ -256,8 +269,8 @@ pub(super) fn by_nodal_normals(number: Dual<3>, slave: &[f64], first: usize) -> 
 }
 
 /// Square root of the sum of the squares of a matrix.
-fn frobenius(rows: &[Nodal<f64>]) -> f64 {
-    rows.iter().flat_map(|row| row.iter()).map(|x| x * x).sum::<f64>().sqrt()
+fn frobenius(entries: impl Iterator<Item = f64>) -> f64 {
+    entries.map(|x| x * x).sum::<f64>().sqrt()
 }
 
 /// Inverse by elimination with row exchanges; `None` if the matrix is too badly conditioned to trust it.
@@ -283,5 +296,6 @@ pub(super) fn inverse(matrix: &Nodal<Nodal<f64>>) -> Option<Nodal<Nodal<f64>>> {
         }
     }
     // Written so that NaN counts as bad.
-    (frobenius(matrix) * frobenius(&inverse) < WORST_CONDITION).then_some(inverse)
+    let norm = |matrix: &Nodal<Nodal<f64>>| frobenius(matrix.iter().flat_map(|row| row.iter().copied()));
+    (norm(matrix) * norm(&inverse) < WORST_CONDITION).then_some(inverse)
 }

@@ -15,3 +15,10 @@ pub struct OverlapPoint<T: Real> {
     /// Length or area that it stands for; about an axis also 2π r by the thickness.
     pub weight: T,
 }
+
+impl<T: Real> OverlapPoint<T> {
+    /// Room for points, which with derivatives are too large to be moved about.
+    pub(super) fn room() -> Self {
+        Self { local: [T::zero(); 2], slave: Nodal::empty(), master: Nodal::empty(), weight: T::zero() }
+    }
+}

@@ -1,11 +1,11 @@
 //! The weighted slip of the slave nodes of a pair, and the tangential directions it is measured in.
 
-use super::gap::weighted_jump;
+use super::gap::{relative, weighted_jump};
 use super::operators::Operators;
 use super::rotation::FacetRotation;
 use zelus_core::geometry::Nodal;
 use zelus_core::scalar::Real;
-use zelus_core::vector3::{constant, cross, dot, norm, normalised, scale, sub};
+use zelus_core::vector3::{constant, cross, dot, norm, normalised, scale, sub, value};
 
 /// The part of a vector in the plane with unit normal `normal`: P v = v − (v·n) n.
 #[inline]
@@ -23,7 +23,8 @@ pub fn objective_slip<T: Real>(
     master: &[[T; 3]],
     normals: &[[T; 3]],
 ) -> Nodal<[T; 3]> {
-    let jump = weighted_jump(&operators.minus(previous), slave, master);
+    let origin = value(slave[0]);
+    let jump = operators.jump_since(previous, &relative(slave, origin), &relative(master, origin));
     Nodal::new(slave.len(), |j| tangential(jump[j], normals[j]))
 }
 
@@ -48,7 +49,8 @@ pub fn rotated_slip<T: Real>(
     master: (&[[T; 3]], &[[f64; 3]]),
     normals: &[[T; 3]],
 ) -> Nodal<[T; 3]> {
-    let before = weighted_jump(operators, &Nodal::of(slave.1).map(constant), &Nodal::of(master.1).map(constant));
+    let constants = |places: &[[f64; 3]]| Nodal::new(places.len(), |n| constant(places[n]));
+    let before = weighted_jump(operators, &constants(slave.1), &constants(master.1));
     let now = weighted_jump(operators, slave.0, master.0);
     Nodal::new(normals.len(), |j| tangential(sub(rotation.apply(before[j]), now[j]), normals[j]))
 }
@@ -68,9 +70,8 @@ pub fn is_objective<T: Real>(
     previous: &Operators<f64>,
     threshold: OperatorThreshold,
 ) -> bool {
-    let change = operators.values().minus(previous);
     let exceeds = |change: f64, before: f64| change > threshold.area + threshold.share * before;
-    let [d, m] = change.norms();
+    let [d, m] = operators.norms_of_change(previous);
     let [d_before, m_before] = previous.norms();
     exceeds(d, d_before) && exceeds(m, m_before)
 }

@@ -84,14 +84,14 @@ impl<'a, T: Real> PairKinematics<'a, T> {
             }
             _ => [T::zero(); 3],
         };
-        Self {
-            geometry,
-            operators,
-            gap: weighted_gap(operators, &geometry.slave, &geometry.master, normals),
-            slip: history.slip(measure, geometry, operators, rotation.as_ref()),
-            history: Nodal::new(geometry.slave.len(), history_traction),
-            area: operators.d.map(|row| row.iter().fold(T::zero(), |sum, d| sum + *d)),
-        }
+        let slaves = geometry.slave.len();
+        let slip = history.slip(measure, geometry, operators, rotation.as_ref());
+        let gap = weighted_gap(operators, &geometry.slave, &geometry.master, normals);
+        let mut out = Self { geometry, operators, gap, slip, history: Nodal::empty(), area: Nodal::empty() };
+        // In place: with derivatives they are too large to be moved about.
+        out.history.refill(slaves, history_traction);
+        out.area.refill(slaves, |j| operators.d[j].iter().fold(T::zero(), |sum, d| sum + *d));
+        out
     }
 
     /// Inputs at slave node `j`.

@@ -53,11 +53,10 @@ pub struct PairSystem<'a> {
     pub points: OnceCell<PairPoints>,
 }
 
-/// Right-hand side of a pair, by node.
+/// Forces on the nodes of a pair.
 struct PairForces<T: Real> {
     master: Nodal<[T; 3]>,
     slave: Nodal<[T; 3]>,
-    multipliers: Nodal<[T; 3]>,
 }
 
 /// Forces and rows of the slave nodes, as the law states them and constraints change them.
@@ -90,7 +89,9 @@ impl PairSystem<'_> {
     /// Forces and rows at the slave nodes.
     fn evaluate<T: LawScalar>(&self, pair: &PairKinematics<'_, T>, multipliers: &[[T; 3]]) -> LawForces<T> {
         let (nodes, zero) = (self.nodes, [T::zero(); 3]);
-        let mut out = LawForces { forces: Nodal::new(nodes.len(), |_| None), rows: Nodal::new(nodes.len(), |_| zero) };
+        let mut out = LawForces { forces: Nodal::empty(), rows: Nodal::empty() };
+        out.forces.refill(nodes.len(), |_| None);
+        out.rows.refill(nodes.len(), |_| zero);
         for (j, node) in nodes.iter().enumerate() {
             let found = T::evaluate(self.law, node, &pair.inputs(j, multipliers[j]));
             (out.forces[j], out.rows[j]) = (found.force, found.multiplier);
@@ -110,17 +111,18 @@ impl PairSystem<'_> {
         let pair = PairKinematics::new(self.law, geometry, operators, self.nodes, self.history);
         let zero = [T::zero(); 3];
         let multipliers = Nodal::new(self.nodes.len(), |j| constant(self.multipliers[j]));
-        let LawForces { forces, rows } = self.evaluate(&pair, &multipliers);
-        let (master, slave) = (geometry.master.map(|_| zero), geometry.slave.map(|_| zero));
-        let mut out = PairForces { master, slave, multipliers: rows };
-        for (j, force) in forces.iter().enumerate() {
+        let law = self.evaluate(&pair, &multipliers);
+        let mut out = PairForces { master: Nodal::empty(), slave: Nodal::empty() };
+        out.master.refill(geometry.master.len(), |_| zero);
+        out.slave.refill(geometry.slave.len(), |_| zero);
+        for (j, force) in law.forces.iter().enumerate() {
             if let Some(force) = force {
                 add_nodal_force(&mut out, operators, j, *force);
             }
         }
         let (space, count) = (geometry.space(), self.law.multiplier().count(geometry.space()));
         let mut row = 0;
-        for (nodes, count) in [(&out.master, space), (&out.slave, space), (&out.multipliers, count)] {
+        for (nodes, count) in [(&out.master, space), (&out.slave, space), (&law.rows, count)] {
             for b in nodes.iter().flat_map(|node| &node[..count]) {
                 visit(row, b);
                 row += 1;
@@ -225,13 +227,13 @@ impl PairSystem<'_> {
         let pair = PairKinematics::new(self.law, &geometry, room, self.nodes, self.history);
         for first in (0..all).step_by(LANES) {
             let seeded = |j: usize| variables_from(first, count * j, self.multipliers[j], count);
-            let LawForces { forces, rows } = self.evaluate(&pair, &Nodal::new(slaves, seeded));
+            let law = self.evaluate(&pair, &Nodal::new(slaves, seeded));
             let lanes = LANES.min(all - first);
             let mut add = |row: usize, factor: f64, b: &Active| {
                 let entries = &mut lhs[row * width + unknowns + first..][..lanes];
                 entries.iter_mut().zip(&b.gradient).for_each(|(entry, derivative)| *entry -= factor * derivative);
             };
-            for (j, force) in forces.iter().enumerate() {
+            for (j, force) in law.forces.iter().enumerate() {
                 let Some(force) = force else { continue };
                 for c in 0..space {
                     for l in 0..masters {
@@ -242,7 +244,7 @@ impl PairSystem<'_> {
                     }
                 }
             }
-            for (j, row) in rows.iter().enumerate() {
+            for (j, row) in law.rows.iter().enumerate() {
                 (0..count).for_each(|c| add(unknowns + count * j + c, 1.0, &row[c]));
             }
         }

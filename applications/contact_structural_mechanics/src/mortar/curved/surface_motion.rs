@@ -105,12 +105,9 @@ impl<'a, T: Real> SurfaceMotion<'a, T> {
         let area = area_of_cell(&corners);
         let motions = corners.map(motion);
         let zero = T::zero();
-        let mut out = OverlapPoint {
-            local: [zero; 2],
-            slave: self.pair.slave_shape.nodal(|_| zero),
-            master: self.pair.master_shape.nodal(|_| zero),
-            weight: zero,
-        };
+        let mut out = OverlapPoint::room();
+        out.slave.refill(self.pair.slave_shape.nodes, |_| zero);
+        out.master.refill(self.pair.master_shape.nodes, |_| zero);
         for point in self.found.points(cell) {
             self.find(point, &motions, area, &mut out);
             visit(&out);
