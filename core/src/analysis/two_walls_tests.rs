@@ -3,9 +3,12 @@
 //! min ½ uᵀ K u − t fᵀ u with n_a · u ≤ g_a for two walls: K u + Σ λ_a n_a = t f, λ_a ≥ 0, λ_a (n_a · u − g_a) = 0. Each wall has
 //! a slave node at the one mesh node, and both have a multiplier of the same variable.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
-use zelus_linear_algebra::{DirectSettings, Engine, State, create, packed};
+use zelus_linear_algebra::{
+    Csr, DirectSettings, Engine, Layout, LinearSolver, SolveError, SolveReport, State, Symmetry, create, packed,
+};
 
 use super::step_backup::StepBackup;
 use crate::assembly::{Assembler, Equations, System};
@@ -232,8 +235,53 @@ struct TestRun {
     newton: NewtonRaphson,
 }
 
+/// Takes each second system with its inactive equations and the others without, as a solver does that changes its engine.
+#[derive(Default)]
+struct Alternating {
+    solves: usize,
+    /// Number of equations by stamp of the graph.
+    seen: BTreeMap<u64, usize>,
+}
+
+impl LinearSolver for Alternating {
+    fn name(&self) -> &'static str {
+        "alternating"
+    }
+
+    fn takes_inactive_rows(&self, _: usize, _: usize) -> bool {
+        self.solves.is_multiple_of(2)
+    }
+
+    fn solve(
+        &mut self,
+        system: &zelus_linear_algebra::System<'_>,
+        rhs: &[f64],
+        x: &mut [f64],
+    ) -> std::result::Result<SolveReport, SolveError> {
+        self.solves += 1;
+        let count = system.equations();
+        assert_eq!(*self.seen.entry(system.bulk_graph).or_insert(count), count, "one stamp, two graphs");
+        let (matrix, is_inactive) = (system.merged(), |i: usize| system.layout.is_inactive(i));
+        let mut entries: Vec<(usize, usize, f64)> = Vec::new();
+        for i in (0..count).filter(|&i| !is_inactive(i)) {
+            let (columns, values) = matrix.row(i);
+            let active = columns.iter().zip(values).filter(|(j, _)| !is_inactive(**j as usize));
+            entries.extend(active.map(|(&j, &value)| (i, j as usize, value)));
+        }
+        entries.extend((0..count).filter(|&i| is_inactive(i)).map(|i| (i, i, 1.0)));
+        let (matrix, layout) = (Csr::from_triplets(count, &entries), Layout::scalar(count));
+        let active: Vec<f64> = (0..count).map(|i| if is_inactive(i) { 0.0 } else { rhs[i] }).collect();
+        let whole = zelus_linear_algebra::System::bulk(&layout, &matrix, Symmetry::General);
+        create(Engine::default()).solve(&whole, &active, x)
+    }
+}
+
 impl TestRun {
-    fn new(mut part: ModelPart, walls: bool) -> Self {
+    fn new(part: ModelPart, walls: bool) -> Self {
+        Self::with(part, walls, create(Engine::Direct(DirectSettings::default())))
+    }
+
+    fn with(mut part: ModelPart, walls: bool, solver: Box<dyn LinearSolver>) -> Self {
         let mut system = System { elements: vec![Box::new(Springs(displacements()))], ..System::default() };
         if walls {
             let mut unknowns = displacements();
@@ -257,7 +305,6 @@ impl TestRun {
         };
         let tolerance = Tolerance { relative: 1e-12, absolute: 1e-13 };
         let criterion = Measure { form: Form::Residual, block: Block::All, tolerance, apart: true };
-        let solver = create(Engine::Direct(DirectSettings::default()));
         let assembler = Assembler::new(&part, &mut system, false);
         let newton = NewtonRaphson::new(settings, Box::new(StaticScheme), Box::new(criterion), solver, assembler);
         Self { part, system, newton }
@@ -304,6 +351,16 @@ fn a_node_in_a_corner_has_the_pressure_of_each_wall() {
     run.step(0.4);
     assert_near(run.displacement(), [0.4; 2]);
     assert_near(run.pressures(), [0.0; 2]);
+}
+
+/// Graphs of systems with inactive equations and without have stamps of their own: what a solver keeps of one is not the other's.
+#[test]
+fn a_solver_may_change_between_systems_with_inactive_equations_and_without() {
+    let mut run = TestRun::with(mesh(), true, Box::new(Alternating::default()));
+    run.step(0.4);
+    run.step(1.0);
+    assert_near(run.displacement(), [0.5, 0.75]);
+    assert_near(run.pressures(), [1.3125, 1.5625]);
 }
 
 #[test]

@@ -13,7 +13,7 @@ use crate::interface::{Interface, Roles, SlaveIndex};
 
 /// Gives the facets of an open interface their roles for this configuration; says whether any has changed.
 ///
-/// Facets are visited in the order of [`walk`]. One that meets others and has no role becomes a slave, and
+/// Facets that meet another body come first, surface by surface, then the others. One that meets others and has no role becomes a slave, and
 /// those it meets that share no node with it nor with another slave become masters. Facets that share a node of a patch
 /// are on one side; one that meets nothing stays open. A body may be the slave on one of its faces and the master on the next.
 pub fn assign_roles(
