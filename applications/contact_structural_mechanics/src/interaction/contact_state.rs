@@ -222,6 +222,9 @@ impl ContactState {
     /// # Errors
     /// Errors of making blocks.
     pub(super) fn extend_open_roles(&mut self, part: &mut ModelPart) -> Result<()> {
+        if self.pairing.interfaces.iter().all(|interface| !interface.open) {
+            return Ok(());
+        }
         let settings = &self.setup.settings;
         let moved = farthest_motion(part, &self.pairing.nodes()) > self.setup.tolerances.length;
         let looks = settings.solver.feature_angle.is_some() && settings.explicit.is_none();
