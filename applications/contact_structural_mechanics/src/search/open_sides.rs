@@ -12,8 +12,9 @@ pub struct OpenSides<'a> {
     pub interface: u32,
 }
 
-impl OpenSides<'_> {
-    pub(super) fn nodes(&self, interface: &Interface, facet: u32) -> &[SlaveIndex] {
+impl<'a> OpenSides<'a> {
+    /// Slave nodes of a facet.
+    pub(super) fn nodes(&self, interface: &Interface, facet: u32) -> &'a [SlaveIndex] {
         self.patches.of_facet(self.interface, facet, interface.facets[facet as usize].nodes.len())
     }
 }

@@ -70,10 +70,9 @@ struct Sides<'a> {
 
 impl<'a> Sides<'a> {
     fn new(part: &ModelPart, interface: &Interface, known: &OpenSides<'a>) -> Self {
-        let own = |at: usize| known.patches.of_facet(known.interface, at as u32, interface.facets[at].nodes.len());
         Self {
             normals: interface.facets.iter().map(|facet| facet.normal(part)).collect(),
-            own: (0..interface.facets.len()).map(own).collect(),
+            own: (0..interface.facets.len() as u32).map(|facet| known.nodes(interface, facet)).collect(),
             at: BTreeMap::new(),
         }
     }
