@@ -30,6 +30,8 @@ const PERTURBED: Formulation =
     ["PerturbedLagrangianContactFrictionless", "perturbed_lagrangian_contact_process", "Frictionless"];
 const UZAWA: Formulation = ["UzawaContactFrictionless", "uzawa_contact_process", "Frictionless"];
 
+const NITSCHE: Formulation = ["NitscheContactFrictionless", "nitsche_contact_process", "Frictionless"];
+
 /// A strip of cells, or of triangles, on a plane.
 struct Strip {
     cells: usize,
@@ -157,6 +159,21 @@ fn sixty_cells_of_triangles_of_six_nodes() {
         let most = if formulation == UZAWA { MOST_WITH_UPDATES } else { MOST };
         Strip { cells: 60, triangles: true, facets: 31, formulation }.must_lift(1.9333, most);
     }
+}
+
+/// Points decide for themselves, without joint decisions: the zone opens node by node.
+const MOST_NODE_BY_NODE: usize = 330;
+
+#[test]
+fn cells_of_eight_nodes_by_nitsche_s_method() {
+    for (cells, facets, last) in [(30, 16, 1.9333), (60, 31, 1.9333), (120, 61, 1.95)] {
+        Strip { cells, triangles: false, facets, formulation: NITSCHE }.must_lift(last, MOST_NODE_BY_NODE);
+    }
+}
+
+#[test]
+fn triangles_of_six_nodes_by_nitsche_s_method() {
+    Strip { cells: 60, triangles: true, facets: 31, formulation: NITSCHE }.must_lift(1.9333, MOST_NODE_BY_NODE);
 }
 
 #[test]

@@ -19,6 +19,25 @@ pub(super) fn converges_linearly(records: &[IterationRecord], more: usize) -> bo
     })
 }
 
+/// Most iterations of a step whose contact zone advances.
+pub(super) const LONGEST_ADVANCE: usize = 500;
+/// Iterations whose largest measures are compared with those of as many before, and the ratio that is an advance.
+const WINDOW: usize = 5;
+const ADVANCE: f64 = 0.9;
+
+/// Whether a contact zone opens or closes node by node: states changed in the last [`WINDOW`] iterations, and the largest value of every measure
+/// above its tolerance fell by [`ADVANCE`] or better beside that of the iterations before.
+pub(super) fn advances(records: &[IterationRecord]) -> bool {
+    let Some(first) = records.len().checked_sub(2 * WINDOW) else { return false };
+    let (before, last) = records[first..].split_at(WINDOW);
+    let largest = |records: &[IterationRecord], check: usize| {
+        records.iter().map(|record| record.checks.get(check).map_or(f64::INFINITY, |own| own.ratio)).fold(0.0, f64::max)
+    };
+    let falls = |check: usize| largest(last, check) <= ADVANCE * largest(before, check);
+    let open = last[WINDOW - 1].checks.iter().enumerate().filter(|(_, check)| !check.converged);
+    last.iter().any(|record| record.active_set_changes > 0) && open.map(|(check, _)| check).all(falls)
+}
+
 /// Largest relative change of a measure over two iterations that counts as oscillation.
 const SAME: f64 = 0.02;
 
@@ -71,6 +90,15 @@ mod tests {
         assert!(!converges_linearly(&records([0.1, 0.3, 0.009], 0), 4), "up and down");
         assert!(!converges_linearly(&records([0.1, 0.09, 0.081], 0), 100), "too slow");
         assert!(!converges_linearly(&steady[1..], 4), "two are no rate");
+    }
+
+    #[test]
+    fn a_zone_that_opens_node_by_node_goes_on() {
+        let falling = [0.1, 0.08, 0.09, 0.07, 0.075, 0.06, 0.065, 0.05, 0.055, 0.04];
+        assert!(advances(&records(falling, 2)));
+        assert!(!advances(&records(falling, 0)), "states are settled");
+        assert!(!advances(&records(falling, 2)[1..]), "too few");
+        assert!(!advances(&records([0.1, 0.1, 0.1, 0.1, 0.1, 0.09, 0.08, 0.07, 0.095, 0.01], 2)), "too slow");
     }
 
     #[test]

@@ -12,17 +12,19 @@ use crate::law::{Decision, NodeState};
 use crate::slave_nodes::SlaveStates;
 use crate::tolerances::Tolerances;
 
-/// Step start: holds the active slave nodes of interfaces without pressure in contact.
+/// Step start: holds active slave nodes in contact where the traction decides nothing: those without any, and all of interfaces
+/// that no traction presses on.
 ///
 /// `slaves` are the slave nodes of each interface.
-pub(crate) fn hold_open_interfaces(states: &mut SlaveStates, slaves: &[Vec<SlaveIndex>], tolerances: Tolerances) {
+pub(crate) fn hold_touching(states: &mut SlaveStates, slaves: &[Vec<SlaveIndex>], tolerances: Tolerances) {
     release(states);
     for nodes in slaves {
-        let presses = |&node: &SlaveIndex| {
-            tolerances.exceeds(-dot(states[node].law.trial, states[node].kinematics.normal), 0.0, false)
-        };
-        if !nodes.iter().any(presses) {
-            nodes.iter().for_each(|&node| states[node].law.forced_active = states[node].law.active);
+        let pressure =
+            |states: &SlaveStates, node: SlaveIndex| -dot(states[node].law.trial, states[node].kinematics.normal);
+        let presses = nodes.iter().any(|&node| tolerances.exceeds(pressure(states, node), 0.0, false));
+        for &node in nodes {
+            let touches = !presses || !tolerances.exceeds(pressure(states, node).abs(), 0.0, false);
+            states[node].law.forced_active = touches && states[node].law.active;
         }
     }
 }

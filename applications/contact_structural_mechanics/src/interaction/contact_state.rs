@@ -335,11 +335,7 @@ impl ContactState {
         let rule = self.setup.parameters.slip_rule;
         activation::start(&part.nodes, &mut self.states, start, rule);
         if self.setup.by_points() {
-            forced_points::hold_open_interfaces(
-                &mut self.states,
-                &self.pairing.slaves_by_interface(),
-                self.setup.tolerances,
-            );
+            forced_points::hold_touching(&mut self.states, &self.pairing.slaves_by_interface(), self.setup.tolerances);
         }
         friction::start_in_stick(part.info.step, &mut self.states, rule, &settings.friction);
         self.pairing.refresh_normals(part, self.setup.updates_normals());

@@ -10,7 +10,7 @@ use crate::diagnostics::{Error, Result};
 use crate::entities::{Interaction, OuterLoop, SetChange};
 use crate::model::ModelPart;
 use crate::strategies::body_balance::Imbalance;
-use crate::strategies::convergence_rate::{converges_linearly, oscillates};
+use crate::strategies::convergence_rate::{LONGEST_ADVANCE, advances, converges_linearly, oscillates};
 use crate::strategies::criterion::ConvergenceCheck;
 use crate::strategies::linear_solve::{Failed, Solved};
 use crate::strategies::reactions::write_reactions;
@@ -100,6 +100,7 @@ impl NewtonRaphson {
         let mut iteration = 0;
         while iteration < step.last
             || (iteration < step.most && converges_linearly(&step.records, step.most - iteration))
+            || (self.settings.continue_if_converging && iteration < LONGEST_ADVANCE && advances(&step.records))
         {
             iteration += 1;
             match self.iteration(iteration, &mut step, part, system, monitor)? {
