@@ -10,6 +10,7 @@ mod body_balance;
 mod calculated_parameters;
 mod condensation;
 mod corners;
+mod elastic_start;
 mod free_bodies;
 mod interface_surfaces;
 mod lift_off;

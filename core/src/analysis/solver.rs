@@ -474,6 +474,7 @@ impl SolverSettings {
             body_balance: self.body_balance()?,
             line_search: None,
             contact_stabilization: is_on("contact_stabilization")?,
+            elastic_start_after_failure: is_on("elastic_start_after_failure")?,
             line_search_after_failure: search_after_failure.then(|| LineSearch::new(&empty)).transpose()?,
         };
         if !scheme.takes_first_order()

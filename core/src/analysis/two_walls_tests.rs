@@ -302,6 +302,7 @@ impl TestRun {
             line_search: None,
             line_search_after_failure: None,
             contact_stabilization: false,
+            elastic_start_after_failure: false,
         };
         let tolerance = Tolerance { relative: 1e-12, absolute: 1e-13 };
         let criterion = Measure { form: Form::Residual, block: Block::All, tolerance, apart: true };

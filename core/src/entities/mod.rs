@@ -35,4 +35,4 @@ pub use registered::{
     BlockFactory, Build, ConditionEntry, ElementEntry, block_factory, block_kinds, find_kind, is_place, kind_names,
     require_kind,
 };
-pub use view::{NORMALS_OF_FIRST_ITERATION, StepView};
+pub use view::{ELASTIC, NORMALS_OF_FIRST_ITERATION, StepView};

@@ -2,7 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::model::{EntityTable, ModelPart, Nodes, ProcessInfo, Properties, SlaveNodes};
+use crate::model::{EntityTable, ModelPart, Nodes, ProcessInfo, Properties, SlaveNodes, StepMark};
+
+/// Mark of iterations in which the history of elements stays as it is: none yields or is damaged further.
+pub const ELASTIC: StepMark = StepMark::new("ELASTIC");
 
 /// Fields and step data at one moment, to read only.
 #[derive(Clone, Copy)]

@@ -1,8 +1,9 @@
 //! Newton's iteration of one step, semi-smooth where an active set changes.
 
-mod joint_decision;
+mod elastic_start;
 mod followers;
 mod iteration;
+mod joint_decision;
 mod lost_body;
 mod references;
 mod stabilization;
@@ -71,6 +72,8 @@ pub struct NewtonSettings {
     pub line_search_after_failure: Option<LineSearch>,
     /// Whether bodies that contact does not restrain yet are stabilised.
     pub contact_stabilization: bool,
+    /// Whether steps that have failed may begin with elastic elements.
+    pub elastic_start_after_failure: bool,
 }
 
 /// Newton's iteration with its scheme, criterion, linear solver and system.
@@ -88,6 +91,10 @@ pub struct NewtonRaphson {
     stabilization_length: Option<f64>,
     /// Whether steps are stabilised from their first iteration on, since one has failed without that.
     stabilizes: bool,
+    /// Whether steps begin with elastic elements, since one has failed without that.
+    begins_elastic: bool,
+    /// Whether the last step might have begun so.
+    may_begin_elastic: bool,
     /// Why the tangent of the step was singular, in this attempt or one before.
     singular_cause: Option<String>,
     /// Whether a body moved on freely at the end of the last step, with contact stabilisation.
@@ -184,7 +191,14 @@ impl SolutionStrategy for NewtonRaphson {
         let NewtonSettings { linear, line_search, line_search_after_failure, .. } = &self.settings;
         let may = line_search_after_failure.is_some() && line_search.is_none() && !linear;
         self.searches = may && !self.searches && failed.failed_to_converge();
-        self.searches.then_some("with a line search")
+        if self.searches {
+            return Some("with a line search");
+        }
+        if self.may_begin_elastic && !self.begins_elastic {
+            self.begins_elastic = true;
+            return Some("with elastic elements until contact has settled");
+        }
+        None
     }
 
     fn solve_step(
@@ -196,6 +210,7 @@ impl SolutionStrategy for NewtonRaphson {
         (self.singular, self.unrestrained) = (false, false);
         self.coarse = None;
         let record = recorded(part, system, |part, system| self.iterate(part, system, monitor));
+        self.end_elastic(part);
         self.failed = !record.as_ref().is_ok_and(|record| record.converged);
         let (coarse, balance) = (self.coarse.take(), self.balance.take());
         Ok(StepRecord { singular: self.singular, unrestrained: self.unrestrained, coarse, balance, ..record? })
@@ -212,7 +227,7 @@ impl SolutionStrategy for NewtonRaphson {
         if self.scheme.has_inertia() && !system.interactions.is_empty() {
             self.measure_energy(part, system)?;
         }
-        (self.searches, self.stabilizes) = (false, false);
+        (self.searches, self.stabilizes, self.begins_elastic) = (false, false, false);
         self.singular_cause = None;
         self.energy_balance.accept();
         let start = Instant::now();
@@ -261,6 +276,8 @@ impl NewtonRaphson {
             assembler,
             stabilization_length: None,
             stabilizes: false,
+            begins_elastic: false,
+            may_begin_elastic: false,
             singular_cause: None,
             unrestrained: false,
             root_gather: RootGather::default(),

@@ -124,7 +124,7 @@ impl<const S: usize, const STRESS_FREE: bool> IsotropicDamage<S, STRESS_FREE> {
     fn grown(&self, state: &StrainState<'_, S>, ratio: f64) -> (f64, f64, f64) {
         let &[kappa, d] = state.history else { unreachable!("damage remembers two numbers") };
         let kappa = kappa.max(1.0);
-        if ratio <= kappa * (1.0 + ON_SURFACE) || ratio.is_nan() {
+        if state.elastic || ratio <= kappa * (1.0 + ON_SURFACE) || ratio.is_nan() {
             return (d, 0.0, kappa);
         }
         let (now, slope) = self.damage(state, ratio);

@@ -53,7 +53,13 @@ impl FiniteStrainPlasticity {
         let dilation: f64 = logs.iter().sum();
         let dev = logs.map(|e| e - dilation / 3.0);
         let q = 2.0 * self.0.mu * (1.5 * dev.iter().map(|e| e * e).sum::<f64>()).sqrt();
-        FiniteStrainTrial { squares, dilation, dev, axes: l * vectors, turn: self.0.turn_back(q, alpha) }
+        FiniteStrainTrial {
+            squares,
+            dilation,
+            dev,
+            axes: l * vectors,
+            turn: if state.elastic { Return::NONE } else { self.0.turn_back(q, alpha) },
+        }
     }
 
     /// τ_A.

@@ -35,6 +35,11 @@ pub struct Return {
     pub lost: f64,
 }
 
+impl Return {
+    /// A state that does not yield.
+    pub const NONE: Self = Self { delta: 0.0, kept: 1.0, lost: 0.0 };
+}
+
 impl J2 {
     /// The material of the properties.
     ///
@@ -50,7 +55,7 @@ impl J2 {
     pub fn turn_back(&self, q: f64, alpha: f64) -> Return {
         let (limit, _) = self.hardening.at(alpha);
         if q <= limit * (1.0 + ON_SURFACE) || q.is_nan() {
-            return Return { delta: 0.0, kept: 1.0, lost: 0.0 };
+            return Return::NONE;
         }
         let three_mu = 3.0 * self.mu;
         // the excess falls from positive at 0 to negative at q/3μ: Newton's method, kept inside

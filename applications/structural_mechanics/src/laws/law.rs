@@ -30,6 +30,8 @@ pub struct StrainState<'a, const S: usize> {
     pub band: f64,
     /// Whether damage counts as in Kratos.
     pub band_as_kratos: bool,
+    /// Whether the history stays as it is: the point neither yields nor is damaged further.
+    pub elastic: bool,
     /// History of the law at the last accepted step: [`ConstitutiveLaw::history`] numbers.
     pub history: &'a [f64],
 }
@@ -45,13 +47,14 @@ impl<'a, const S: usize> StrainState<'a, S> {
         temperature: 0.0,
         band: 0.0,
         band_as_kratos: false,
+        elastic: false,
         history: &[],
     };
 
     /// The same with other components of strain.
     pub fn with_strain<const T: usize>(self, strain: [f64; T]) -> StrainState<'a, T> {
-        let Self { f, det_f, small, pressure, temperature, band, band_as_kratos, history, .. } = self;
-        StrainState { strain, f, det_f, small, pressure, temperature, band, band_as_kratos, history }
+        let Self { f, det_f, small, pressure, temperature, band, band_as_kratos, elastic, history, .. } = self;
+        StrainState { strain, f, det_f, small, pressure, temperature, band, band_as_kratos, elastic, history }
     }
 }
 

@@ -264,3 +264,23 @@ fn curves_of_hardening() {
     assert!(refused(&[("YIELD_STRESS", 1.0), ("ISOTROPIC_HARDENING_MODULUS", -1.0)]).contains("falls"));
     assert!(refused(&[]).contains("have no YIELD_STRESS"));
 }
+
+/// In an elastic state a law answers as one that never yields, from the same history, and keeps that history.
+#[test]
+fn an_elastic_state_keeps_the_history() {
+    for name in [SMALL, FINITE] {
+        let [own, strong] = [YIELD, 1e6 * YIELD].map(|limit| law::<6>(name, &[("YIELD_STRESS", limit)]));
+        let mut random = Random(7);
+        let history = advanced(own.as_ref(), std::array::from_fn(|_| 0.05 * random.next()), &[0.0; 7]);
+        assert!(history[6] > 0.0, "{name}: it has yielded");
+        let strain: [f64; 6] = std::array::from_fn(|_| 0.05 * random.next());
+        let state = StrainState { elastic: true, ..state(strain, IDENTITY, &history) };
+        let [mut tangent, mut expected] = [[[0.0; 6]; 6]; 2];
+        let found = own.pk2(&state, Some(&mut tangent));
+        assert_eq!((found, tangent), (strong.pk2(&state, Some(&mut expected)), expected), "{name}");
+        assert_ne!(found, own.pk2(&StrainState { elastic: false, ..state }, None), "{name}: it would yield");
+        let mut next = history.clone();
+        own.advance(&state, &mut next);
+        assert!(size(&next.iter().zip(&history).map(|(a, b)| a - b).collect::<Vec<f64>>()) < 1e-14, "{name}");
+    }
+}

@@ -62,7 +62,12 @@ impl SmallStrainPlasticity {
         let strain = strain_tensor(&state.strain);
         let s = 2.0 * self.0.mu * (deviator(&strain) - plastic);
         let size = s.norm();
-        SmallStrainTrial { s, size, dilation: strain.trace(), turn: self.0.turn_back(1.5_f64.sqrt() * size, alpha) }
+        SmallStrainTrial {
+            s,
+            size,
+            dilation: strain.trace(),
+            turn: if state.elastic { Return::NONE } else { self.0.turn_back(1.5_f64.sqrt() * size, alpha) },
+        }
     }
 
     fn boxed<const S: usize>(properties: &Properties) -> Result<Box<dyn ConstitutiveLaw<S>>> {

@@ -93,6 +93,7 @@ impl NewtonRaphson {
         monitor: &mut dyn Monitor,
     ) -> Result<(Vec<IterationRecord>, Option<String>)> {
         monitor.phase("search");
+        self.begin_elastic(part, system);
         let mut step = self.begin_step(part, system)?;
         if let Some(what) = self.first_infinite(part, system, &step.residual) {
             return Ok((Vec::new(), Some(format!("the step cannot begin: {what}"))));
@@ -106,6 +107,15 @@ impl NewtonRaphson {
             match self.iteration(iteration, &mut step, part, system, monitor)? {
                 IterationEnd::Continue => {}
                 IterationEnd::Failed(why) => return Ok((step.records, Some(why))),
+                IterationEnd::Converged if self.end_elastic(part) => {
+                    step.residual = self.residual(part, system)?;
+                    let (last, most) = self.allowed();
+                    (step.last, step.most) = (iteration + last, iteration + most);
+                    let step = part.info.step;
+                    monitor.note(&format!(
+                        "step {step}: contact has settled with elastic elements, which may yield from here on"
+                    ));
+                }
                 IterationEnd::Converged => {
                     self.keep_reactions(part, system, &step.residual);
                     step.imbalance = self.keep_balance(part, system, &step.residual, &step.references, None)?;

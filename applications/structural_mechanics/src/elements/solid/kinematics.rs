@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use crate::variables::{DISPLACEMENT, TEMPERATURE};
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{EntityView, StepView};
+use zelus_core::entities::{ELASTIC, EntityView, StepView};
 use zelus_core::geometry::ShapeTable;
 
 use super::Solid;
@@ -52,6 +52,8 @@ pub(super) struct ElementMotion<const NODES: usize> {
     temperatures: Option<[f64; NODES]>,
     /// Width of the band in which the element softens, and whether that is Kratos'.
     band: (f64, bool),
+    /// Whether the history of the law stays as it is.
+    elastic: bool,
 }
 
 impl<const NODES: usize> ElementMotion<NODES> {
@@ -78,11 +80,12 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         let (material, as_kratos) = (self.material(entity), view.info.has(BANDS_AS_KRATOS));
         let width = if material.law.softens() { band::width(material.rule, &entity.initial, as_kratos) } else { 0.0 };
         let band = (width, as_kratos);
+        let elastic = view.info.has(ELASTIC);
         let displacement = nodal_vectors(entity, view, &DISPLACEMENT);
         let column = view.nodes.history.values(&TEMPERATURE, 0);
         let temperatures = (!column.is_empty()).then(|| entity.scalars(column));
         if !F::FINITE {
-            return ElementMotion { u: displacement, ahead: None, temperatures, band };
+            return ElementMotion { u: displacement, ahead: None, temperatures, band, elastic };
         }
         let (x, initial) = (&entity.current, &entity.initial);
         let nodes = |of: &dyn Fn(usize, usize) -> f64| {
@@ -100,7 +103,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             };
             [nodes(&|i, c| x[i][c] - initial[i][c] - (displacement[i][c] - old[i][c])), old]
         });
-        ElementMotion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead, temperatures, band }
+        ElementMotion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead, temperatures, band, elastic }
     }
 
     /// Volume on the initial configuration that Gauss point `g` stands for, without thickness.
@@ -232,6 +235,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
                 temperature: motion.temperature(material, n)?,
                 band: motion.band.0,
                 band_as_kratos: motion.band.1,
+                elastic: motion.elastic,
                 history: material.remembered(g, state),
             },
         })
