@@ -3,9 +3,10 @@
 
     compare.py [--threads 2] [--rounds 3] [DECK...]
     compare.py --blocks 8 16 24 [--kinds frictionless friction] [--steps 1]
+    compare.py --lugs 1,1 2,2
 
 A DECK is a ProjectParameters.json or its folder; `--blocks` names sizes of the decks of gen_blocks.py instead (cells along an edge of
-the lower block: 8 are 3,000 unknowns, 60 a million). All programs run on scratch copies, alternately, and times are those of the
+the lower block: 8 are 3,000 unknowns, 60 a million), and `--lugs` those of gen_lug.py (edge of the cells and their order). All programs run on scratch copies, alternately, and times are those of the
 whole process, the shortest of the rounds, on the clock and of the processors. The latter means something on a machine that
 does other work as well; take it with one thread, since waiting threads of the reference count as busy. Memory is the
 largest of the process. Comparisons with stored results, and output in a format that one program does not know, are left
@@ -14,8 +15,8 @@ that fails, or takes longer than --limit, shows as such and ends in exit code 1.
 
 The reference is KratosMultiphysics: that of the Python that the environment names (KRATOS_PYTHON), or else one that is
 installed into target/reference by pip, once. `--alone` times zelus only. KRATOS_RUN may name a script that runs a
-deck given as its argument; without it a plain structural-mechanics analysis is run. Of the kind `body` CalculiX solves the same
-mesh, too, where `ccx` is installed.
+deck given as its argument; without it a plain structural-mechanics analysis is run. Of the kind `body` and of lugs CalculiX solves the
+same mesh, too, where `ccx` is installed. `--programs` selects among them.
 """
 import argparse
 import json
@@ -29,6 +30,7 @@ import time
 import venv
 
 import gen_blocks
+import gen_lug
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PACKAGES = ["KratosMultiphysics", "KratosStructuralMechanicsApplication", "KratosContactStructuralMechanicsApplication",
@@ -155,6 +157,8 @@ def main():
     parser.add_argument("decks", nargs="*", metavar="DECK")
     parser.add_argument("--blocks", type=int, nargs="+", default=[], metavar="CELLS")
     parser.add_argument("--kinds", nargs="+", choices=gen_blocks.KINDS, default=["frictionless"])
+    parser.add_argument("--lugs", nargs="+", default=[], metavar="SIZE,ORDER")
+    parser.add_argument("--programs", nargs="+", choices=["Kratos", "CalculiX"], default=["Kratos", "CalculiX"], help="beside zelus")
     parser.add_argument("--steps", type=int, default=1, help="steps of the blocks")
     parser.add_argument("--solver", help="linear solver that the blocks name, instead of what the reference is fastest with")
     parser.add_argument("--ours", metavar="DECK", help="what zelus runs instead of the one DECK")
@@ -166,16 +170,17 @@ def main():
     options = parser.parse_args()
     if options.ours and len(options.decks) != 1:
         parser.error("--ours goes with one DECK")
-    if not options.decks and not options.blocks:
-        parser.error("name decks, or sizes with --blocks")
+    if not options.decks and not options.blocks and not options.lugs:
+        parser.error("name decks, or sizes with --blocks or --lugs")
     zelus = os.path.abspath(options.zelus)
     if not os.path.isfile(zelus):
         sys.exit(f"there is no {zelus}; build it with `cargo build --release`, or name another with --zelus")
     programs = {"zelus": [zelus, "run", "--threads", str(options.threads), "--report", "report.json"]}
-    if not options.alone:
+    if not options.alone and "Kratos" in options.programs:
         python, script = python_of_reference(), os.environ.get("KRATOS_RUN")
         programs["Kratos"] = [python, os.path.abspath(script)] if script else [python, "-c", REFERENCE]
-    ccx = shutil.which("ccx") if "body" in options.kinds and options.blocks else None
+    has_files = options.lugs or "body" in options.kinds and options.blocks
+    ccx = shutil.which("ccx") if has_files and not options.alone and "CalculiX" in options.programs else None
     names = [*programs, *(["CalculiX"] if ccx else [])]
 
     print(f"Whole process, {options.threads} threads, best of {options.rounds} alternating rounds; in brackets the ratio to zelus.\n")
@@ -196,15 +201,21 @@ def main():
                                stdout=subprocess.DEVNULL)
                 steps = f", {options.steps} steps" if options.steps > 1 else ""
                 decks.append(((folder, "ProjectParameters.json"), f"{kind}, {cells}{steps}"))
+        for size, order in (lug.split(",") for lug in options.lugs):
+            folder = os.path.join(made, f"lug-{size}-{order}")
+            asked = ["--size", size, "--order", order, "--zelus", zelus, *(["--solver", options.solver] if options.solver else [])]
+            subprocess.run([sys.executable, gen_lug.__file__, folder, *asked], check=True, stdout=subprocess.DEVNULL)
+            decks.append(((folder, "ProjectParameters.json"), f"lug, {size} mm, order {order}"))
         for theirs, label in decks:
             rounds, said = {name: [] for name in names}, None
             for _ in range(options.rounds):
                 for name in names:
                     deck = deck_of(options.ours) if options.ours and name == "zelus" else theirs
                     if name == "CalculiX":
-                        if not os.path.isfile(os.path.join(theirs[0], "blocks.inp")):
+                        files = [name[:-4] for name in os.listdir(theirs[0]) if name.endswith(".inp")]
+                        if not files:
                             continue
-                        command = [ccx, "-i", "blocks"]
+                        command = [ccx, "-i", files[0]]
                     else:
                         command = programs[name] + [deck[1]]
                     done, report = one_round(command, deck, options.threads, options.limit)
