@@ -17,6 +17,7 @@ pub struct Deck<'a> {
     end_time: f64,
     material: Value,
     parts: Vec<(String, Vec<usize>)>,
+    elements: Vec<(String, Vec<usize>)>,
     conditions: Vec<(String, String, Vec<Vec<usize>>)>,
     processes: Vec<Value>,
     gauss: Vec<String>,
@@ -51,6 +52,7 @@ impl<'a> Deck<'a> {
             end_time: 1.0,
             material,
             parts: Vec::new(),
+            elements: Vec::new(),
             conditions: Vec::new(),
             processes: Vec::new(),
             gauss: Vec::new(),
@@ -121,6 +123,18 @@ impl<'a> Deck<'a> {
         self.part(self.grid.nodes_where(wanted))
     }
 
+    /// A part with the elements all of whose nodes are wanted; its name below the root part.
+    pub fn cells(&mut self, wanted: impl Fn(Vec3) -> bool) -> String {
+        let is_wanted = |nodes: &[usize]| nodes.iter().all(|&node| wanted(self.grid.reference[node]));
+        let cells: Vec<usize> = (0..self.grid.cells.len()).filter(|&at| is_wanted(&self.grid.cells[at])).collect();
+        let mut nodes: Vec<usize> = cells.iter().flat_map(|&at| self.grid.cells[at].clone()).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let name = self.part(nodes);
+        self.elements.push((name.clone(), cells));
+        name
+    }
+
     /// Puts conditions of a kind on facets and gives them a scalar.
     pub fn scalar_load(
         &mut self,
@@ -157,7 +171,22 @@ impl<'a> Deck<'a> {
 
     /// Puts conditions of a kind on facets; the path of their part.
     pub fn facets(&mut self, wanted: impl Fn(Vec3) -> bool, kind: &str) -> String {
-        let facets = self.grid.facets_where(wanted);
+        self.conditions_on(self.grid.facets_where(wanted), kind)
+    }
+
+    /// As [`Deck::facets`], on one of the two sides of facets within the body: that of the first element.
+    pub fn facets_once(&mut self, wanted: impl Fn(Vec3) -> bool, kind: &str) -> String {
+        let mut known = std::collections::BTreeSet::new();
+        let mut facets = self.grid.facets_where(wanted);
+        facets.retain(|(_, nodes)| {
+            let mut sorted = nodes.clone();
+            sorted.sort_unstable();
+            known.insert(sorted)
+        });
+        self.conditions_on(facets, kind)
+    }
+
+    fn conditions_on(&mut self, facets: Vec<(Shape, Vec<usize>)>, kind: &str) -> String {
         let shape: Shape = facets.first().expect("a facet").0;
         let name = format!("{kind}{}", shape.cell().suffix(self.dim));
         let nodes: Vec<Vec<usize>> = facets.into_iter().map(|(_, nodes)| nodes).collect();
@@ -197,6 +226,10 @@ impl<'a> Deck<'a> {
                 "Begin SubModelPart {name}\nBegin SubModelPartNodes\n{}\nEnd SubModelPartNodes\n",
                 ids(nodes).replace(' ', "\n")
             );
+            if let Some((_, cells)) = self.elements.iter().find(|(part, _)| part == name) {
+                let _ = writeln!(out, "Begin SubModelPartElements\n{}", ids(cells).replace(' ', "\n"));
+                out.push_str("End SubModelPartElements\n");
+            }
             out.push_str("Begin SubModelPartConditions\n");
             members.iter().filter(|(part, _)| *part == name).for_each(|(_, id)| {
                 let _ = writeln!(out, "{id}");
@@ -235,7 +268,7 @@ impl<'a> Deck<'a> {
     }
 
     /// The files of the deck.
-    fn write(&self) -> tempfile::TempDir {
+    pub fn write(&self) -> tempfile::TempDir {
         let folder = tempfile::tempdir().expect("a scratch folder");
         let mut processes = self.processes.clone();
         processes.push(json!({
@@ -256,6 +289,13 @@ impl<'a> Deck<'a> {
 }
 
 impl Ran {
+    /// A number of the report of a step (from 0) by name.
+    pub fn number(&self, name: &str, step: usize) -> f64 {
+        let numbers = &self.report.steps[step].interactions;
+        let found = numbers.iter().find(|(known, _)| known == name);
+        found.unwrap_or_else(|| panic!("no {name:?} among {numbers:?}")).1
+    }
+
     /// Times that were written.
     pub fn times(&self) -> Vec<f64> {
         self.json["TIME"].as_array().expect("TIME").iter().filter_map(Value::as_f64).collect()

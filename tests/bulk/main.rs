@@ -3,6 +3,7 @@
 //! Each test builds its mesh, writes a deck as a user would, runs it and compares. Every reference is ANALYTIC unless the
 //! test says otherwise; the tolerance stands with its reason.
 
+mod bolts;
 mod convergence;
 mod deck;
 mod elastic;

@@ -113,6 +113,12 @@ fn directions_and_resultants() {
     stand_side_by_side_with("contact_3d/hexahedra_nonmatching", false, slide_on_a_slope);
 }
 
+/// A mesh that a process cuts before ranks share it.
+#[test]
+fn a_bolt() {
+    stand_side_by_side("constraints/tightened_bolt");
+}
+
 /// Ranks that have nothing of a variable measure it with the others.
 #[test]
 fn unknowns_of_several_kinds() {

@@ -202,6 +202,7 @@ fn ties_and_constraints() {
         case("cases/mpc/tying_matching", 4),
         case("cases/mpc/mapped_field", 4),
         case("cases/constraints/rigid_plate", 4),
+        case("cases/constraints/tightened_bolt", 4),
         case("cases/constraints/rigid_plate_elimination", 4),
         DIRECTIONS,
         SLOPE,

@@ -270,6 +270,18 @@ pub(super) struct Folders {
     pub results: PathBuf,
 }
 
+/// Lets the processes of a deck change the mesh as read. The warnings on their settings come when they are made.
+pub(super) fn prepare_mesh(deck: &Node, folders: &Folders, model: &mut Model, problems: &mut Report) {
+    for item in listed(deck, &mut Report::new()) {
+        let name = item.get("python_module").or(item.get("name")).and_then(Node::as_str).unwrap_or_default();
+        let Some(entry) = registry::find::<ProcessEntry>(name.rsplit('.').next().unwrap_or_default()) else { continue };
+        let Some(parameters) = item.get("Parameters") else { continue };
+        let (folder, results, report) = (&*folders.deck, &*folders.results, &mut Report::new());
+        let mut request = ProcessRequest { entry, parameters, model: &mut *model, folder, results, report };
+        problems.absorb((entry.prepares)(&mut request).map_err(|error| error.at(&parameters.place())));
+    }
+}
+
 /// The processes of a deck.
 pub(super) fn make_processes(
     deck: &Node,

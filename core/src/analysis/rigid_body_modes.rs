@@ -1,14 +1,17 @@
 //! Restraint of each body: the rigid-body modes that supports leave free, and whether contact, friction or nothing restrains them.
 //!
-//! Bodies are connected elements. Unknowns are the rigid-body modes of each body that its elements do not resist; supports,
-//! constraints, ties and places in contact are rows over them. Motions that all rows leave alone are free.
+//! Bodies are connected elements. Unknowns are the rigid-body modes of each body that its elements do not resist, and those of nodes
+//! without elements that constraints name; supports, constraints, ties and places in contact are rows over them. Motions that all
+//! rows leave alone are free.
+
+use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use crate::assembly::System;
 use crate::diagnostics::{Diagnostic, Report};
 use crate::entities::{Join, LocalSystems, Request, Tangent};
-use crate::model::{ModelPart, NumberedBodies, Rates, ScalarVariable};
+use crate::model::{MasterSlaveConstraint, ModelPart, NodeUnknown, NumberedBodies, Rates, ScalarVariable};
 use crate::processes::{DirectionalPrescription, Prescription};
 use crate::strategies::body_in_words;
 use crate::vector3::{add, cross, dot, norm, scale, sub};
@@ -37,6 +40,8 @@ struct Bodies<'a> {
     /// The first node (id) of each body, its centre and its size.
     bodies: Vec<(usize, [f64; 3], f64)>,
     motions: Vec<Motion>,
+    /// Unknowns of nodes of no body in constraints, as reference nodes have: each is one more motion, after those of the bodies.
+    others: BTreeMap<NodeUnknown, usize>,
 }
 
 /// Reports before the run, in statics, the restraint of bodies that supports leave free; gives whether there are such bodies and
@@ -55,10 +60,12 @@ pub(super) fn report_restraints(
     let joins: Vec<Join> = joins.into_iter().flatten().collect();
     let mut bodies = Bodies::of(part);
     bodies.find_motions(system);
-    if bodies.motions.is_empty() || bodies.motions.len() > MOST {
+    bodies.find_others(column);
+    let count = bodies.count();
+    if bodies.motions.is_empty() || count > MOST {
         return false;
     }
-    let mut rows = Rows { gram: DMatrix::zeros(bodies.motions.len(), bodies.motions.len()) };
+    let mut rows = Rows { gram: DMatrix::zeros(count, count) };
     bodies.drop_immobile(&mut rows);
     bodies.support(column, prescribed, &mut rows);
     bodies.support_along(column, along, &mut rows);
@@ -110,7 +117,24 @@ impl<'a> Bodies<'a> {
         };
         let bodies = first.into_iter().zip(boxes).map(body).collect();
         let of_node = of_node.into_iter().map(|body| body.unwrap_or(usize::MAX)).collect();
-        Self { part, of_node, bodies, motions: Vec::new() }
+        Self { part, of_node, bodies, motions: Vec::new(), others: BTreeMap::new() }
+    }
+
+    /// The unknowns of nodes of no body in constraints that relate bodies by `column`.
+    fn find_others(&mut self, column: &str) {
+        for own in self.part.constraints.iter().filter(|own| relates_motions(own, column)) {
+            for (node, variable) in own.masters.iter().map(|(unknown, _)| *unknown).chain([own.slave]) {
+                if self.of_node[node as usize] == usize::MAX || variable.column != column {
+                    let next = self.motions.len() + self.others.len();
+                    self.others.entry((node, variable)).or_insert(next);
+                }
+            }
+        }
+    }
+
+    /// Number of motions of bodies and other nodes.
+    fn count(&self) -> usize {
+        self.motions.len() + self.others.len()
     }
 
     /// The rigid-body modes that an element of the body does not resist; collective.
@@ -182,7 +206,8 @@ impl<'a> Bodies<'a> {
 
     /// Rows of motions in which no node moves, as the turning of a bar about itself.
     fn drop_immobile(&self, rows: &mut Rows) {
-        let mut moved = Rows { gram: DMatrix::zeros(self.motions.len(), self.motions.len()) };
+        let mut moved = Rows { gram: DMatrix::zeros(self.count(), self.count()) };
+        self.others.values().for_each(|&at| moved.gram[(at, at)] = 1.0);
         let mut counts = vec![0; self.bodies.len()];
         self.of_node.iter().filter(|&&body| body != usize::MAX).for_each(|&body| counts[body] += 1);
         let strides: Vec<usize> = counts.iter().map(|count| count / SAMPLE + 1).collect();
@@ -192,7 +217,7 @@ impl<'a> Bodies<'a> {
                 continue;
             }
             for c in 0..3 {
-                let mut row = vec![0.0; self.motions.len()];
+                let mut row = vec![0.0; self.count()];
                 self.row(node as u32, std::array::from_fn(|d| f64::from(u8::from(c == d))), 1.0, &mut row);
                 moved.add(&row);
             }
@@ -203,22 +228,28 @@ impl<'a> Bodies<'a> {
     /// Rows of fixed unknowns and of linear constraints.
     fn support(&self, column: &'static str, prescribed: &[Prescription], rows: &mut Rows) {
         let axis = |c: usize| std::array::from_fn(|d| f64::from(u8::from(c == d)));
-        let mut add = |terms: &[(u32, usize, f64)]| {
-            let mut row = vec![0.0; self.motions.len()];
-            terms.iter().for_each(|&(node, c, factor)| self.row(node, axis(c), factor, &mut row));
+        let mut add = |terms: &[(NodeUnknown, f64)]| {
+            let mut row = vec![0.0; self.count()];
+            for &((node, variable), factor) in terms {
+                match self.others.get(&(node, variable)) {
+                    Some(&at) => row[at] += factor,
+                    None if variable.column == column => self.row(node, axis(variable.offset()), factor, &mut row),
+                    None => {}
+                }
+            }
             rows.add(&row);
         };
-        for own in prescribed.iter().filter(|own| own.variable.column == column) {
-            own.values.iter().for_each(|&(node, _)| add(&[(node, own.variable.offset(), 1.0)]));
+        for own in prescribed {
+            own.values.iter().for_each(|&(node, _)| add(&[((node, own.variable), 1.0)]));
         }
         let components = (0..3_u8).map(|c| ScalarVariable { column, component: Some(c) });
         for variable in components {
             let fixed = (0..self.part.nodes.len() as u32).filter(|&node| self.part.nodes.is_fixed(variable, node));
-            fixed.for_each(|node| add(&[(node, variable.offset(), 1.0)]));
+            fixed.for_each(|node| add(&[((node, variable), 1.0)]));
         }
-        for own in self.part.constraints.iter().filter(|own| own.active && own.slave.1.column == column) {
-            let masters = own.masters.iter().map(|&((node, variable), weight)| (node, variable.offset(), -weight));
-            let terms: Vec<_> = std::iter::once((own.slave.0, own.slave.1.offset(), 1.0)).chain(masters).collect();
+        for own in self.part.constraints.iter().filter(|own| relates_motions(own, column)) {
+            let masters = own.masters.iter().map(|&(unknown, weight)| (unknown, -weight));
+            let terms: Vec<_> = std::iter::once((own.slave, 1.0)).chain(masters).collect();
             add(&terms);
         }
     }
@@ -227,7 +258,7 @@ impl<'a> Bodies<'a> {
     fn support_along(&self, column: &'static str, along: &[DirectionalPrescription], rows: &mut Rows) {
         let own = along.iter().filter(|own| own.column == column);
         for &(node, direction, _) in own.flat_map(|own| &own.values) {
-            let mut row = vec![0.0; self.motions.len()];
+            let mut row = vec![0.0; self.count()];
             self.row(node, direction, 1.0, &mut row);
             rows.add(&row);
         }
@@ -240,7 +271,7 @@ impl<'a> Bodies<'a> {
         for block in points.chain(&system.conditions).filter(|block| stiff(block.tangent())) {
             for &node in (0..block.len()).flat_map(|at| block.nodes(at)) {
                 for c in 0..3 {
-                    let mut row = vec![0.0; self.motions.len()];
+                    let mut row = vec![0.0; self.count()];
                     self.row(node, std::array::from_fn(|d| f64::from(u8::from(c == d))), 1.0, &mut row);
                     rows.add(&row);
                 }
@@ -258,6 +289,12 @@ impl<'a> Bodies<'a> {
         let own = DMatrix::from_fn(n, free.len(), |row, column| free[column][of_body[row]]);
         own.rank(1e-4)
     }
+}
+
+/// Whether a constraint holds now and relates unknowns by which nodes move.
+fn relates_motions(own: &MasterSlaveConstraint, column: &str) -> bool {
+    let mut unknowns = own.masters.iter().map(|(unknown, _)| unknown).chain([&own.slave]);
+    own.active && own.set.is_none() && unknowns.any(|(_, variable)| variable.column == column)
 }
 
 /// The box around two.
@@ -288,7 +325,7 @@ impl Rows {
             _ => axes.to_vec(),
         };
         for direction in directions {
-            let mut row = vec![0.0; bodies.motions.len()];
+            let mut row = vec![0.0; bodies.count()];
             bodies.row(join.nodes[0], direction, 1.0, &mut row);
             let other = bodies.of_node[join.nodes[1] as usize];
             // The place where they meet, as a point of the other body.

@@ -105,7 +105,7 @@ pub type SupportOf<'a> = dyn Fn(ScalarVariable, u32) -> Option<Option<f64>> + Sy
 /// A constraint whose slave a support prescribes.
 fn supported_slave(constraint: &MasterSlaveConstraint, node: usize, why: &str) -> Diagnostic {
     let (_, variable) = constraint.slave;
-    let fact = format!("constraint {} makes {variable} of node {node} follow others, {why}", constraint.id);
+    let fact = format!("{} makes {variable} of node {node} follow others, {why}", constraint.in_words());
     let remedy = "take the node out of the support, or make one of its masters the slave";
     Diagnostic::error("constraint-on-support", fact).remedy(remedy)
 }
@@ -131,11 +131,10 @@ impl Equations {
             let owner = part.slave_nodes.owner(constraint.set.as_deref(), node);
             let Some(number) = owner.and_then(|owner| dofs.number_of(variable, owner)) else { continue };
             if let Some(first) = slaves.insert(number, constraint) {
-                let fact = format!(
-                    "constraints {} and {} both eliminate {variable} of node {}",
-                    first.id, constraint.id, nodes.ids[node as usize]
-                );
-                return Err(Diagnostic::error("constraint-twice", fact).remedy("remove one of them").into());
+                let [one, other] = [first, constraint].map(MasterSlaveConstraint::in_words);
+                let fact = format!("{one} and {other} both eliminate {variable} of node {}", nodes.ids[node as usize]);
+                let remedy = "remove one of them, or take the node out of one of the parts";
+                return Err(Diagnostic::error("constraint-twice", fact).remedy(remedy).into());
             }
         }
         let is_free = |number: usize| {
@@ -416,7 +415,7 @@ fn follow(
 ) -> Result<f64> {
     let constraint = slaves[&number];
     if depth > slaves.len() {
-        let fact = format!("constraint {} depends on itself through other constraints", constraint.id);
+        let fact = format!("{} depends on itself through other constraints", constraint.in_words());
         return Err(Diagnostic::error("constraint-circle", fact).remedy("remove one constraint of the circle").into());
     }
     let mut constant = shares[0] * constraint.constant;
@@ -428,8 +427,9 @@ fn follow(
             Diagnostic::error(
                 "constraint-unknown",
                 format!(
-                    "constraint {} needs {variable} of node {}, which is not an unknown",
-                    constraint.id, part.nodes.ids[node as usize]
+                    "{} needs {variable} of node {}, which is not an unknown",
+                    constraint.in_words(),
+                    part.nodes.ids[node as usize]
                 ),
             )
         })?;

@@ -28,11 +28,31 @@ pub struct MasterSlaveConstraint {
     pub set: Option<String>,
     /// The support along a direction from which it comes: its force acts between the node and the ground.
     pub support: Option<DirectionalSupport>,
+    /// The process that made it and its part, for messages; empty for constraints of the mesh.
+    pub origin: String,
 }
 
 impl MasterSlaveConstraint {
     /// A constraint that holds, without a constant, and not yet of a part: its id is 0.
     pub fn new(slave: NodeUnknown, masters: Vec<(NodeUnknown, f64)>) -> Self {
-        Self { id: 0, slave, masters, forces: None, constant: 0.0, active: true, set: None, support: None }
+        Self {
+            id: 0,
+            slave,
+            masters,
+            forces: None,
+            constant: 0.0,
+            active: true,
+            set: None,
+            support: None,
+            origin: String::new(),
+        }
+    }
+
+    /// Its number, and where it comes from, for messages.
+    pub fn in_words(&self) -> String {
+        match self.origin.as_str() {
+            "" => format!("constraint {}", self.id),
+            origin => format!("constraint {} of {origin}", self.id),
+        }
     }
 }

@@ -166,6 +166,37 @@ impl ModelPart {
         made
     }
 
+    /// Adds a copy of each of these nodes, which ascend, with their values and fixities; the copies join the sub parts of the originals.
+    /// Gives the index of the first.
+    ///
+    /// # Panics
+    /// When ranks share the part: they have no ids in common.
+    pub fn add_copies_of_nodes(&mut self, originals: &[u32]) -> u32 {
+        let (first, next) = (self.nodes.len() as u32, self.next_node_id());
+        let mut copies = self.nodes.pick(originals);
+        copies.ids = (next..next + originals.len()).collect();
+        self.nodes.append(&copies);
+        let copy_of = |node: u32| originals.binary_search(&node).ok().map(|at| first + at as u32);
+        self.tree.add_nodes_beside(&copy_of);
+        first
+    }
+
+    /// Adds a node without values to the root part; gives its index.
+    ///
+    /// # Panics
+    /// As [`ModelPart::add_copies_of_nodes`].
+    pub fn add_node(&mut self, position: [f64; 3]) -> u32 {
+        let (at, id) = (self.nodes.len() as u32, self.next_node_id());
+        self.nodes.append(&Nodes::new(vec![id], vec![position]));
+        self.tree.nodes.push(at);
+        at
+    }
+
+    fn next_node_id(&self) -> usize {
+        assert!(self.share.is_none(), "ranks share {}: no node can be added", self.name);
+        self.nodes.ids.last().map_or(1, |last| last + 1)
+    }
+
     /// Whether this rank evaluates an entity between bodies with these nodes: who has the pairs of the last one does, which
     /// is one of the slave's.
     pub fn evaluates_pair(&self, nodes: &[u32]) -> bool {

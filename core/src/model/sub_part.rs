@@ -105,6 +105,13 @@ impl SubPart {
         }
     }
 
+    /// Adds the copies of its nodes, which stand after all others, here and below.
+    pub(super) fn add_nodes_beside(&mut self, copy_of: &dyn Fn(u32) -> Option<u32>) {
+        let copies: Vec<u32> = self.nodes.iter().filter_map(|&node| copy_of(node)).collect();
+        self.nodes.extend(copies);
+        self.children.values_mut().for_each(|child| child.add_nodes_beside(copy_of));
+    }
+
     /// Sorts all lists and removes repetitions, here and below.
     pub fn normalise(&mut self) {
         let SubPart { nodes, elements, conditions, geometries, constraints, .. } = self;

@@ -314,6 +314,9 @@ registered_kind! {
     /// A process that decks name.
     pub struct ProcessEntry("process", "unknown-process") {
         build: ProcessFactory;
+        /// Changes that it makes to the mesh as read, before ranks share it and before any process is made. Faults of the settings
+        /// are left to `build`.
+        prepares: fn(&mut ProcessRequest<'_>) -> Result<()> = |_| Ok(()),
         /// Keys whose parts, or nodes by id, every rank must have whole where several share a mesh.
         common: &'static [&'static str] = &[],
         /// Word for what it puts between its surfaces that must be there once only, e.g. "contact"; empty where it puts nothing.

@@ -3,6 +3,8 @@
 mod outward_faces;
 mod resultant;
 mod nodal_conditions;
+mod bolt_section;
+mod bolt_pretension_process;
 mod distribute_load_on_surface_process;
 mod assign_displacement_along_direction_process;
 mod assign_ground_springs_process;

@@ -76,7 +76,7 @@ impl Stage {
         run.report.add_seconds("read", start.elapsed().as_secs_f64());
         run.monitor.phase("set up");
         let start = Instant::now();
-        let shared = SharedStage::share(read, &folders.deck, run)?;
+        let shared = SharedStage::share(read, folders, run)?;
         let built = BuiltStage::build(shared, folders, more, outputs, run)?;
         let (told, contact_restrains) = check(&built, run.model)?;
         tell(told, run.report, run.monitor);

@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use zelus_linear_algebra::memory;
 
-use super::super::deck::mesh_file;
+use super::super::deck::{Folders, mesh_file, prepare_mesh};
 use super::super::driver::LoopPoint;
 use super::super::older_decks::{complete_part_names, modernise};
 use super::super::sharing::{distribute, read_the_same_files};
 use super::parsed_stage::ParsedStage;
+use super::problems_of_ranks::{as_error, problems_of_all};
 use super::read_stage::ReadStage;
 use super::run_context::RunContext;
 use crate::assembly::System;
@@ -31,11 +32,12 @@ pub(super) struct SharedStage<'a> {
 }
 
 impl<'a> SharedStage<'a> {
-    /// Gives each rank its share of the mesh, then lets the driver see the model. Files are named from `folder`. Collective.
+    /// Lets processes change the mesh, gives each rank its share of it, then lets the driver see the model. Collective.
     ///
     /// # Errors
-    /// Ranks with different files, a mesh that cannot be cut, an error of the driver; all other problems are gathered.
-    pub fn share(read: ReadStage<'a>, folder: &Path, run: &mut RunContext<'_>) -> Result<Self> {
+    /// Ranks with different files, a mesh that processes cannot change or that cannot be cut, an error of the driver; all other problems
+    /// are gathered.
+    pub fn share(read: ReadStage<'a>, folders: &Folders, run: &mut RunContext<'_>) -> Result<Self> {
         let ReadStage { mut parsed, has_mesh, is_whole, by_root } = read;
         let ParsedStage { stage, later, deck, root, problems, .. } = &mut parsed;
         complete_part_names(deck, root, run.model, problems);
@@ -45,8 +47,19 @@ impl<'a> SharedStage<'a> {
             complete_part_names(&mut deck, root, run.model, &mut Report::new());
             decks.push(deck);
         }
+        let mut is_prepared = true;
         let changes = later.iter().any(|later| !later.modelers.is_empty());
         let ranks = run.model.ranks.clone();
+        if has_mesh && run.model.parts.contains_key(root.as_str()) {
+            let mut of_mesh = Report::new();
+            prepare_mesh(deck, folders, run.model, &mut of_mesh);
+            is_prepared = !of_mesh.has_errors();
+            of_mesh.diagnostics().iter().for_each(|problem| problems.push(problem.clone()));
+        }
+        if ranks.any(!is_prepared) {
+            return Err(as_error(problems_of_all(&ranks, std::mem::take(problems))?));
+        }
+        let folder = &*folders.deck;
         let of_mesh = mesh_files(deck, &stage.modelers, folder);
         let mut inputs = deck_files(deck);
         read_the_same_files(&ranks, &inputs)?;
