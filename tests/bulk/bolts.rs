@@ -197,6 +197,24 @@ fn oblique_sections_are_exact() {
     }
 }
 
+/// ANALYTIC: where the whole skin may touch, the two sides of a section, which overlap, do not: the force F shortens a bar of stiffness
+/// 100 by F/100.
+#[test]
+fn the_sides_of_a_section_are_not_in_contact() {
+    for shape in [Shape::Hex8, Shape::Tet4, Shape::Quad4] {
+        let grid = bar(shape, 5);
+        let mut deck = fixed_bar(&grid, "SmallDisplacementElement");
+        deck.set("convergence_criterion", json!("contact_residual_criterion"));
+        deck.set("contact_settings", json!({"mortar_type": "ALMContactFrictionless"}));
+        let bolt = format!("Structure.{}", deck.cells(|_| true));
+        let [normal, point] = [[1.0, 0.0, 0.0], [1.6, 0.2, 0.3]].map(|p| turned(shape.dim(), p));
+        deck.process(BOLT, json!({"model_part_name": bolt, "point": point, "normal": normal, "force": 6.0}));
+        deck.process("alm_contact_process", json!({"model_part_name": "Structure", "contact_type": "Frictionless"}));
+        let shortening = deck.run().number(&format!("shortening of bolt {bolt}"), 0);
+        assert_near(&[shortening], &[0.06], 1e-10, &format!("{shape:?}"));
+    }
+}
+
 /// ANALYTIC: two bars of stiffness 100 side by side between the ground and a plate on a spring, tightened one after the other: where the
 /// second pulls the plate down by w₂ − w₁, the first loses its share at locked length.
 #[test]

@@ -8,7 +8,7 @@ use zelus_core::diagnostics::{Diagnostic, Report, counted, unfit};
 use zelus_core::geometry::mapping::{domain_size, unit_normal};
 use zelus_core::geometry::{Shape, reversed};
 use zelus_core::model::flags::INTERFACE;
-use zelus_core::model::{ModelPart, SubPart};
+use zelus_core::model::{ModelPart, ScalarVariable, SubPart};
 use zelus_core::vector3::{add, dot, norm, scale, sub};
 
 use super::facet::{Facet, FacetSource, Roles};
@@ -478,7 +478,33 @@ fn boundary_faces(part: &ModelPart, wanted: &[bool]) -> Faces {
             faces.entry(sorted).and_modify(|face| face.shared += 1).or_insert_with(new);
         }
     }
+    join_sections(part, &mut faces);
     faces
+}
+
+/// Faces that constraints hold together, as the two sides of the section of a bolt, lie within a body.
+fn join_sections(part: &ModelPart, faces: &mut Faces) {
+    let mut followed: FxHashMap<u32, u32> = FxHashMap::default();
+    for own in part.constraints.iter().filter(|own| own.active && own.set.is_none()) {
+        let (node, variable) = own.slave;
+        let at_one_place = |other: u32| part.nodes.initial[other as usize] == part.nodes.initial[node as usize];
+        let follows = |&&((other, of), _): &&((u32, ScalarVariable), f64)| of == variable && at_one_place(other);
+        if let Some(((other, _), _)) = own.masters.iter().find(follows) {
+            followed.insert(node, *other);
+        }
+    }
+    if followed.is_empty() {
+        return;
+    }
+    let joined = |nodes: &Vec<u32>| {
+        let mut others = nodes.iter().map(|node| followed.get(node).copied()).collect::<Option<Vec<u32>>>()?;
+        others.sort_unstable();
+        faces.contains_key(&others).then(|| [nodes.clone(), others])
+    };
+    let both: Vec<Vec<u32>> = faces.keys().filter_map(joined).flatten().collect();
+    for nodes in both {
+        faces.entry(nodes).and_modify(|face| face.shared += 1);
+    }
 }
 
 #[cfg(test)]
