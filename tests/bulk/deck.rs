@@ -18,6 +18,7 @@ pub struct Deck<'a> {
     material: Value,
     parts: Vec<(String, Vec<usize>)>,
     elements: Vec<(String, Vec<usize>)>,
+    outputs: Vec<String>,
     conditions: Vec<(String, String, Vec<Vec<usize>>)>,
     processes: Vec<Value>,
     gauss: Vec<String>,
@@ -53,6 +54,7 @@ impl<'a> Deck<'a> {
             material,
             parts: Vec::new(),
             elements: Vec::new(),
+            outputs: vec!["DISPLACEMENT".to_owned(), "REACTION".to_owned()],
             conditions: Vec::new(),
             processes: Vec::new(),
             gauss: Vec::new(),
@@ -133,6 +135,12 @@ impl<'a> Deck<'a> {
         let name = self.part(nodes);
         self.elements.push((name.clone(), cells));
         name
+    }
+
+    /// Asks for further vectors at the nodes.
+    pub fn output(&mut self, names: &[&str]) -> &mut Self {
+        self.outputs.extend(names.iter().map(|&name| name.to_owned()));
+        self
     }
 
     /// Puts conditions of a kind on facets and gives them a scalar.
@@ -274,7 +282,7 @@ impl<'a> Deck<'a> {
         processes.push(json!({
             "python_module": "json_output_process", "kratos_module": "KratosMultiphysics", "Parameters": {
                 "output_file_name": "results.json", "model_part_name": "Structure", "time_frequency": 0.0,
-                "output_variables": ["DISPLACEMENT", "REACTION"], "gauss_points_output_variables": self.gauss}}));
+                "output_variables": self.outputs, "gauss_points_output_variables": self.gauss}}));
         let deck = json!({
             "problem_data": {"problem_name": "bulk", "parallel_type": "OpenMP", "echo_level": 0, "start_time": 0.0,
                 "end_time": self.end_time},

@@ -5,6 +5,7 @@
 
 mod bolts;
 mod convergence;
+mod couplings;
 mod deck;
 mod elastic;
 mod grid;

@@ -119,6 +119,13 @@ fn a_bolt() {
     stand_side_by_side("constraints/tightened_bolt");
 }
 
+/// Reference nodes that are made before ranks share the mesh.
+#[test]
+fn couplings() {
+    // The mesh is small: every rank has all of it.
+    stand_side_by_side_with("constraints/coupled_block", false, |_| {});
+}
+
 /// Ranks that have nothing of a variable measure it with the others.
 #[test]
 fn unknowns_of_several_kinds() {

@@ -103,7 +103,6 @@ fn known_names_that_are_not_there_say_what_to_use_instead() {
             "SmallDisplacementMixedVolumetricStrainElement",
         ),
         ("element", "TotalLagrangianQ1P0MixedElement2D4N", "TotalLagrangianMixedVolumetricStrainElement2D3N"),
-        ("condition", "PointMomentCondition3D1N", "PointLoadCondition"),
         ("condition", "DisplacementControlCondition3D1N", "arc_length"),
         (
             "constitutive_law",

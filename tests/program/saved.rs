@@ -203,6 +203,7 @@ fn ties_and_constraints() {
         case("cases/mpc/mapped_field", 4),
         case("cases/constraints/rigid_plate", 4),
         case("cases/constraints/tightened_bolt", 4),
+        case("cases/constraints/coupled_block", 4),
         case("cases/constraints/rigid_plate_elimination", 4),
         DIRECTIONS,
         SLOPE,

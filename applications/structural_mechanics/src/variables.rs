@@ -11,6 +11,11 @@ register_variable! {
     pub MIDDLE_VELOCITY: [f64; 3] = "Velocity half a step after VELOCITY, in explicit integration (length per time).";
     pub FORCE_RESIDUAL: [f64; 3] = "External minus internal forces that explicit integration accelerates (force).";
     pub POINT_LOAD: [f64; 3] = "Force on a point (force).";
+    pub ROTATION: [f64; 3] = "Rotation vector of the reference node of a coupling (radian); other nodes have none.";
+    pub ANGULAR_VELOCITY: [f64; 3] = "Rate of ROTATION (radian per time).";
+    pub ANGULAR_ACCELERATION: [f64; 3] = "Second rate of ROTATION (radian per time squared).";
+    pub REACTION_MOMENT: [f64; 3] = "Moment of the supports on a reference node, of couplings where it is free (force times length).";
+    pub POINT_MOMENT: [f64; 3] = "Moment on the reference node of a coupling (force times length).";
     pub GROUND_STIFFNESS: [f64; 3] = "Stiffness of springs between a node and the ground along the axes (force per length).";
     pub RESULTANT_LOAD: [f64; 3] = "Share of a node in a load that is given by its resultant (force).";
     pub LINE_LOAD: [f64; 3] = "Force per present length of a line (force per length).";
@@ -69,10 +74,6 @@ register_variable! {
     kind DELAY_TIME: Scalar = "Without effect: time of relaxation, which no law here has.";
     kind THERMAL_EXPANSION_COEFFICIENT: Scalar = "Strain by temperature of laws that expand (per temperature).";
     kind REFERENCE_TEMPERATURE: Scalar = "Temperature at which laws that expand are without thermal strain.";
-    kind ROTATION: Vector3 = "Not computed: nodes have no rotations.";
-    kind REACTION_MOMENT: Vector3 = "Not computed: nodes have no rotations.";
-    kind ANGULAR_VELOCITY: Vector3 = "Not computed: nodes have no rotations.";
-    kind ANGULAR_ACCELERATION: Vector3 = "Not computed: nodes have no rotations.";
     kind PLASTIC_DISSIPATION: Scalar = "Not computed: no law here measures it; EQUIVALENT_PLASTIC_STRAIN grows with it.";
     kind DAMAGE: Scalar = "Damage, from 0 to 1: the share of stress and stiffness that is lost.";
     kind THRESHOLD: Scalar = "Largest equivalent stress so far, which damage compares with UNIAXIAL_STRESS (force per area).";
@@ -114,4 +115,10 @@ register_rates! { "DISPLACEMENT",
     mass: Some("NODAL_MASS"),
     rayleigh: Some(["RAYLEIGH_ALPHA", "RAYLEIGH_BETA"]),
     moves_mesh: true,
+}
+
+register_rates! { "ROTATION",
+    first: "ANGULAR_VELOCITY",
+    second: Some("ANGULAR_ACCELERATION"),
+    reaction: Some("REACTION_MOMENT"),
 }

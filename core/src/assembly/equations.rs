@@ -251,6 +251,12 @@ impl Equations {
         self.roles[number] == DofRole::Fixed
     }
 
+    /// The unknowns to which an unknown hands its force on, with their shares; none where it is no slave.
+    pub fn hands_on(&self, number: usize) -> impl Iterator<Item = (u32, f64)> + '_ {
+        let terms = if let DofRole::Slave(terms) = &self.roles[number] { &terms[..] } else { &[] };
+        terms.iter().map(|term| (self.free[term.equation as usize], term.force))
+    }
+
     /// Whether an unknown is solved for.
     pub fn is_free(&self, number: usize) -> bool {
         matches!(self.roles[number], DofRole::Free(_))

@@ -5,7 +5,8 @@
 //!
 //! ‖r‖_b ≤ tol · max(‖f_ext‖_b, ‖f_int‖_b, ‖f_contact‖_b, ‖f_inertia‖_b), and |Σ r|_b ≤ tol · max Σ|f|_b
 //!
-//! with the forces of supported unknowns among those of the right-hand side. Residuals no larger than round-off pass: of the terms
+//! with the forces of supported unknowns among those of the right-hand side, and for nodes of no element with the forces that
+//! constraints hand on to them. Residuals no larger than round-off pass: of the terms
 //! in the present state, or of the residual at the start of the step, which a body that is let go loses whole.
 
 use super::criterion::is_round_off;
@@ -15,8 +16,9 @@ use crate::assembly::{Assembler, System};
 use crate::model::{ModelPart, NumberedBodies, Rates};
 use crate::vector3::norm;
 
-/// Kinds of forces that act: loads, elements, interactions, inertia.
+/// Kinds of forces that act: loads, elements, interactions, inertia; then those that constraints hand on.
 const KINDS: usize = 4;
+const HANDED_ON: usize = KINDS;
 /// Share of the residual at the start of the step that is round-off.
 const ROUND_OFF: f64 = 1e-12;
 /// Place of the residual of the present state; that of the start of the step follows.
@@ -60,15 +62,16 @@ impl Imbalance {
     }
 
     /// The body that is farthest out of balance beyond `tolerance`; `None` where each is in balance. Residuals are those that the
-    /// equations see, now and at the start of the step. Collective.
+    /// equations see, now and at the start of the step; `residual` is that of all unknowns now. Collective.
     pub fn largest(
         groups: &BodyDofs<'_>,
         part: &ModelPart,
         residuals: [&[f64]; 2],
+        residual: &[f64],
         forces: &Forces,
         tolerance: f64,
     ) -> Option<Self> {
-        let terms = groups.terms(part, residuals, forces);
+        let terms = groups.terms(part, residuals, residual, forces);
         let mut beyond: Vec<(usize, f64)> = (0..groups.count()).map(|group| (group, terms.ratio(group))).collect();
         beyond.retain(|&(group, ratio)| ratio > tolerance && !terms.has_fallen(group));
         if beyond.is_empty() {
@@ -119,6 +122,13 @@ impl<'a> BodyDofs<'a> {
         Some(body.unwrap_or(self.bodies.first.len()) * self.columns.len() + column)
     }
 
+    /// Group of an unknown of a node of no element, which another rank may count.
+    fn without_element(&self, n: usize) -> Option<usize> {
+        let column = self.places[self.system.dofs.kinds()[n] as usize]?;
+        let is_of_body = self.bodies.of_node[self.system.dofs.dofs()[n].node as usize].is_some();
+        (!is_of_body).then(|| self.bodies.first.len() * self.columns.len() + column)
+    }
+
     /// Unknowns that are solved for, with their groups.
     fn solved(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let unknowns = self.assembler.equations().unknowns().iter().map(|&n| n as usize);
@@ -126,13 +136,20 @@ impl<'a> BodyDofs<'a> {
     }
 
     /// Terms of the balance of each group; collective.
-    fn terms(&self, part: &ModelPart, residuals: [&[f64]; 2], forces: &Forces) -> BodySums {
+    fn terms(&self, part: &ModelPart, residuals: [&[f64]; 2], residual: &[f64], forces: &Forces) -> BodySums {
         let mut out = BodySums::new(self.count());
         for (n, group) in (0..self.system.dofs.len()).filter_map(|n| Some((n, self.of(n)?))) {
             for (kind, of_kind) in forces[..KINDS].iter().enumerate() {
                 out.squares[group][kind] += of_kind[n] * of_kind[n];
                 out.sizes[group][kind] += of_kind[n].abs();
             }
+        }
+        let equations = self.assembler.equations();
+        let slaves = (0..self.system.dofs.len()).filter(|&n| equations.has_slaves() && self.assembler.counts(n));
+        for (n, (master, share)) in slaves.flat_map(|n| equations.hands_on(n).map(move |term| (n, term))) {
+            let Some(group) = self.without_element(master as usize) else { continue };
+            out.squares[group][HANDED_ON] += (share * residual[n]).powi(2);
+            out.sizes[group][HANDED_ON] += (share * residual[n]).abs();
         }
         for (n, group) in self.solved() {
             out.sum[group][self.system.dofs.dofs()[n].variable.offset()] += residuals[NOW][n];
@@ -164,20 +181,20 @@ struct BodySums {
     /// Σ r of these now, by component.
     sum: Vec<[f64; 3]>,
     /// Σ f² of all unknowns, by kind of force.
-    squares: Vec<[f64; KINDS]>,
+    squares: Vec<[f64; KINDS + 1]>,
     /// Σ|f| of all unknowns, by kind of force.
-    sizes: Vec<[f64; KINDS]>,
+    sizes: Vec<[f64; KINDS + 1]>,
 }
 
 impl BodySums {
     fn new(count: usize) -> Self {
-        let (squares, sizes) = (vec![[0.0; KINDS]; count], vec![[0.0; KINDS]; count]);
+        let (squares, sizes) = (vec![[0.0; KINDS + 1]; count], vec![[0.0; KINDS + 1]; count]);
         Self { residual: vec![[0.0; 2]; count], sum: vec![[0.0; 3]; count], squares, sizes }
     }
 
     /// Residual of a group by the largest of its forces: that of the norms or that of the sums, whichever is more.
     fn ratio(&self, group: usize) -> f64 {
-        let largest = |terms: &[f64; KINDS]| terms.iter().copied().fold(0.0, f64::max);
+        let largest = |terms: &[f64; KINDS + 1]| terms.iter().copied().fold(0.0, f64::max);
         let by_norm = self.residual[group][NOW].sqrt() / largest(&self.squares[group]).sqrt().max(f64::MIN_POSITIVE);
         let by_sum = norm(self.sum[group]) / largest(&self.sizes[group]).max(f64::MIN_POSITIVE);
         by_norm.max(by_sum)

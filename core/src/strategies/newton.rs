@@ -367,7 +367,7 @@ impl NewtonRaphson {
         let balanced = self.assembler.equations().balanced(residual);
         let start = references.start.first()?;
         let groups = BodyDofs::new(bodies, system, &self.assembler);
-        Imbalance::largest(&groups, part, [&balanced, start], forces, tolerance)
+        Imbalance::largest(&groups, part, [&balanced, start], residual, forces, tolerance)
     }
 
     /// Notes the energy of the present state where it is the largest so far.

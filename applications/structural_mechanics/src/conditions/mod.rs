@@ -9,6 +9,7 @@ mod ground_spring;
 mod line_load;
 mod load;
 mod point_load;
+mod point_moment;
 mod resultant_load;
 mod surface_load;
 #[cfg(test)]
@@ -19,5 +20,6 @@ pub use ground_spring::GroundSpring;
 pub use line_load::{LineLoad, SpatialLineLoad};
 pub use load::{AtStart, Distributed, DistributedLoad};
 pub use point_load::PointLoad;
+pub use point_moment::PointMoment;
 pub use resultant_load::ResultantLoad;
 pub use surface_load::SurfaceLoad;

@@ -58,9 +58,6 @@ register_absent! { SolverEntry ["eigen_value", "harmonic_analysis", "prebuckling
 register_absent! { ConditionEntry ["DisplacementControl"] =>
 "prescribe DISPLACEMENT, or follow the load by \"solving_strategy_settings\" of the type \"arc_length\"" }
 
-register_absent! { ConditionEntry ["PointMoment"] =>
-"nodes have no rotations: apply a pair of forces, PointLoadCondition" }
-
 register_absent! { ConditionEntry ["MovingLoad"] =>
 "use LineLoadCondition with a load that is a function of x and t" }
 

@@ -1,0 +1,122 @@
+//! Couples the nodes of a part to a reference node so that they move as a rigid body: [`super::kinematic_coupling`].
+
+use zelus_core::assembly::System;
+use zelus_core::diagnostics::{Diagnostic, Report, Result};
+use zelus_core::entities::Interaction;
+use zelus_core::model::{MasterSlaveConstraint, Model, ModelPart};
+use zelus_core::parameters::{Interval, Settings};
+use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, Target, check_unknowns};
+use zelus_core::register;
+use zelus_core::vector3::sub;
+
+use super::kinematic_coupling::{KinematicCoupling, LargeRotation};
+use super::reference_node::{ReferenceNode, prepare, required};
+
+struct KinematicCouplingProcess {
+    target: Target,
+    reference: ReferenceNode,
+    coupling: KinematicCoupling,
+    /// Whether the constraints follow large rotations.
+    large: bool,
+}
+
+/// The part that a coupling names, at all times.
+pub(super) fn coupled_part(settings: &Settings, model: &Model) -> Result<Target> {
+    let (path, place) = (settings.get_str("model_part_name")?.to_owned(), settings.key_place("model_part_name"));
+    model.root(&path).and_then(|root| root.part(&path)).map_err(|error| error.at(&place))?;
+    Ok(Target { path, interval: Interval::ALWAYS, place, process: settings.name().to_owned() })
+}
+
+fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
+    let settings = request.settings_with(required)?;
+    let target = coupled_part(&settings, request.model)?;
+    let part = request.model.root(&target.path)?;
+    let reference = ReferenceNode::new(&settings, part, &target)?;
+    let wanted: [bool; 3] = settings.get("components")?.parse("components")?;
+    let coupled: Vec<u8> = (0..part.info.domain_size as u8).filter(|&c| wanted[usize::from(c)]).collect();
+    if coupled.is_empty() {
+        let problem = settings.error("components", "invalid-value", "no component is coupled");
+        return Err(problem.remedy("write true for one at least, in planar models in the plane").into());
+    }
+    let nodes = &target.selection(&part.tree)?.nodes;
+    let arm = |node: u32| sub(part.nodes.initial[node as usize], part.nodes.initial[reference.node as usize]);
+    let arms = nodes.iter().map(|&node| (node, arm(node))).collect();
+    let large = match settings.get("large_rotations")? {
+        node if node.is_null() => !is_of_small_displacements(part, nodes),
+        node => node.bool()?,
+    };
+    let large = large && !part.info.solver.linear;
+    let coupling = KinematicCoupling { reference: reference.node, arms, coupled, made: 0..0 };
+    Ok(Box::new(KinematicCouplingProcess { target, reference, coupling, large }))
+}
+
+/// Whether all elements at some nodes are of small displacements; collective.
+fn is_of_small_displacements(part: &ModelPart, nodes: &[u32]) -> bool {
+    let is_other = |at: usize| {
+        let is_at = part.elements.nodes(at as u32).iter().any(|node| nodes.binary_search(node).is_ok());
+        is_at && !part.elements.kinds[at].small_displacement
+    };
+    !part.ranks.any((0..part.elements.len()).any(is_other))
+}
+
+impl Process for KinematicCouplingProcess {
+    fn initialize(&mut self, model: &mut Model) -> Result<()> {
+        let part = model.root_mut(&self.target.path)?;
+        let origin = format!("{} on {}", self.target.process, self.target.path);
+        let new = self.coupling.constraints(part.info.domain_size, [0.0; 3]);
+        let new = new.into_iter().map(|own| MasterSlaveConstraint { origin: origin.clone(), ..own });
+        self.coupling.made = part.add_constraints(new);
+        Ok(())
+    }
+
+    fn interaction(&mut self, _model: &mut Model) -> Result<Option<(String, Box<dyn Interaction>)>> {
+        let made = || Box::new(LargeRotation::new(self.coupling.clone())) as Box<dyn Interaction>;
+        Ok(self.large.then(|| (self.target.path.clone(), made())))
+    }
+
+    fn check(&self, model: &Model, system: &System, _warnings: &mut Report) -> Result<()> {
+        let part = model.root(&self.target.path)?;
+        self.reference.check(part, system)?;
+        let slaves = part.constraints[self.coupling.made.clone()].iter().map(|constraint| constraint.slave);
+        check_unknowns(part, system, slaves, &self.target.place)
+    }
+
+    fn drives(&self, _part: &ModelPart, _system: &System) -> bool {
+        false
+    }
+
+    fn end_step(&mut self, model: &mut Model, _system: &System) -> Result<()> {
+        self.reference.see(model.root(&self.target.path)?);
+        Ok(())
+    }
+
+    fn summary(&self) -> Vec<(&'static str, f64)> {
+        self.reference.summary()
+    }
+
+    fn last_messages(&self, model: &Model) -> Vec<Diagnostic> {
+        let part = model.root(&self.target.path).ok().filter(|_| !self.large);
+        part.and_then(|part| self.reference.large_rotation(part)).into_iter().collect()
+    }
+
+    fn finalize(&mut self, model: &mut Model) -> Result<()> {
+        // Later stages have couplings of their own.
+        let part = model.root_mut(&self.target.path)?;
+        part.constraints[self.coupling.made.clone()].iter_mut().for_each(|constraint| constraint.active = false);
+        Ok(())
+    }
+
+    fn suspend(&mut self, _model: &mut Model) -> Result<()> {
+        Ok(())
+    }
+}
+
+register! { ProcessEntry "kinematic_coupling_process",
+    aliases: &["KinematicCouplingProcess"],
+    about: "couples the nodes of a part to a reference node as a rigid body (RBE2)",
+    source: "u_i = u_R + (exp [θ]× − I) r_i",
+    common: &["model_part_name", "reference_model_part_name"],
+    prepares: prepare,
+    defaults: include_str!("../../../../configs/processes/kinematic_coupling_process.json"),
+    build: build,
+}
