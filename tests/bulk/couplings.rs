@@ -198,6 +198,12 @@ fn resultants(ran: &Ran, grid: &Grid, nodes: &[usize], about: Vec3) -> [Vec3; 2]
 /// of `distribute_resultant_on_part_process`; for faces of all shapes, and for nodes alone.
 #[test]
 fn distributed_loads_are_statically_equivalent() {
+    // Where nodes are eliminated, the weights of the others add to the round-off of the solve.
+    distribute(false, 1e-12);
+    distribute(true, 2e-11);
+}
+
+fn distribute(leads: bool, tolerance: f64) {
     let (force, moment, point) = ([3.0, -5.0, 2.0], [0.7, 11.0, -4.0], [3.0, 0.4, -2.0]);
     for shape in [Shape::Hex8, Shape::Hex20, Shape::Tet4, Shape::Tet10, Shape::Prism6, Shape::Quad4, Shape::Quad8] {
         let dim = shape.dim();
@@ -219,7 +225,7 @@ fn distributed_loads_are_statically_equivalent() {
                 let wanted = |p: Vec3| p[0] == 1.0;
                 let name = if has_faces { deck.facets(wanted, kind) } else { deck.nodes(wanted) };
                 if is_coupled {
-                    couple(&mut deck, DISTRIBUTING, &name, point, json!({}));
+                    couple(&mut deck, DISTRIBUTING, &name, point, json!({"reference_node_leads": leads}));
                     load(&mut deck, force, moment);
                 } else {
                     let settings = json!({"model_part_name": format!("Structure.{name}"), "force": force,
@@ -229,15 +235,40 @@ fn distributed_loads_are_statically_equivalent() {
                 deck.run()
             };
             let (coupled, loaded) = (run(true), run(false));
-            let what = format!("{shape:?}, {}", if has_faces { "faces" } else { "nodes" });
+            let what = format!("{shape:?}, {leads}, {}", if has_faces { "faces" } else { "nodes" });
             let [of_force, of_moment] = resultants(&coupled, &grid, &grid.nodes_where(|p| p[0] == 0.0), point);
-            assert_vector(of_force, force.map(|f| -f), 6.0, 1e-12, &format!("force, {what}"));
-            assert_vector(of_moment, moment.map(|m| -m), 20.0, 1e-12, &format!("moment, {what}"));
+            assert_vector(of_force, force.map(|f| -f), 6.0, tolerance, &format!("force, {what}"));
+            assert_vector(of_moment, moment.map(|m| -m), 20.0, tolerance, &format!("moment, {what}"));
             let [found, expected] = [&coupled, &loaded].map(|ran| ran.displacements(&grid));
             let size = expected.iter().flatten().fold(0.0_f64, |most, u| most.max(u.abs()));
             let off = found.iter().zip(&expected).flat_map(|(a, b)| sub(*a, *b)).fold(0.0_f64, |m, u| m.max(u.abs()));
-            assert!(off < 1e-11 * size, "{what}: {off:e} of {size:e}");
+            assert!(off < 10.0 * tolerance * size, "{what}: {off:e} of {size:e}");
         }
+    }
+}
+
+/// ANALYTIC: the end of a cantilever in plane stress that a rotation of its reference node bends on average remains free to contract:
+/// M = EI θ/L is the moment of the supports, for any Poisson's ratio, which shapes of second order hold exactly. The force of the
+/// supports is zero.
+#[test]
+fn a_prescribed_mean_rotation_bends_a_cantilever() {
+    let (length, height, young, rotation) = (10.0, 1.0, 1e6, 2e-4);
+    for shape in [Shape::Tri6, Shape::Quad8, Shape::Quad9] {
+        let grid = Grid::new(shape, &[4, 2], |p| [length * p[0], height * (p[1] - 0.5), 0.0]);
+        let material = json!({"YOUNG_MODULUS": young, "POISSON_RATIO": 0.3, "THICKNESS": 0.5});
+        let mut deck = Deck::new(&grid, "SmallDisplacementElement", "LinearElasticPlaneStress2DLaw", material);
+        deck.fix(|p| p[0] == 0.0, [zero(), FREE, FREE]).fix(|p| p[0] == 0.0 && p[1] == 0.5, [FREE, zero(), FREE]);
+        let end = deck.facets(|p| p[0] == 1.0, "LineCondition");
+        let point = [length + 3.0, -0.7, 0.0];
+        couple(&mut deck, DISTRIBUTING, &end, point, json!({"reference_node_leads": true}));
+        hold(&mut deck, "ROTATION", [FREE, FREE, json!(rotation)]);
+        let ran = deck.run();
+        let node = grid.nodes.len();
+        let moment = young * 0.5 * height * height * height / 12.0 * rotation / length;
+        assert_close(ran.last("REACTION_MOMENT", node)[2], moment, 1e-10, &format!("moment, {shape:?}"));
+        let tip = grid.nodes_where(|p| p[0] == 1.0 && p[1] == 0.5)[0];
+        assert_close(ran.last("DISPLACEMENT", tip)[1], 0.5 * rotation * length, 1e-10, &format!("{shape:?}"));
+        assert_vector(ran.last("REACTION", node), [0.0; 3], moment, 1e-10, &format!("force, {shape:?}"));
     }
 }
 
@@ -350,6 +381,40 @@ fn a_torque_spins_a_block() {
         before = alpha;
         assert_close(ran.vector("ROTATION", grid.nodes.len(), step)[2], theta, 1e-9, &format!("step {step}"));
     }
+}
+
+/// A reference node of the mesh, with a condition of its own, does as one that is made.
+#[test]
+fn reference_nodes_may_be_those_of_the_mesh() {
+    let point = [3.0, 0.4, -0.2];
+    let run = |of_mesh: bool| {
+        let mut grid = Grid::new(Shape::Hex8, &[3, 2, 2], |p| [2.0 * p[0], p[1], p[2]]);
+        if of_mesh {
+            grid.nodes.push(point);
+            grid.reference.push([9.0; 3]);
+        }
+        let material = json!({"YOUNG_MODULUS": 100.0, "POISSON_RATIO": 0.3});
+        let mut deck = Deck::new(&grid, "SmallDisplacementElement", "LinearElastic3DLaw", material);
+        deck.fix(|p| p[0] == 0.0, [zero(), zero(), zero()]);
+        let face = deck.nodes(|p| p[0] == 1.0);
+        let (reference, more) = match of_mesh {
+            true => (format!("Structure.{}", deck.nodes(|p| p[0] == 9.0)), Value::Null),
+            false => (REFERENCE.to_owned(), json!(point)),
+        };
+        let settings = json!({"model_part_name": format!("Structure.{face}"), "reference_model_part_name": reference,
+            "reference_point": more});
+        deck.process(KINEMATIC, settings);
+        for (variable, value) in [("POINT_LOAD", [0.3, -0.2, 0.1]), ("POINT_MOMENT", [0.1, 0.4, -0.2])] {
+            let settings = json!({"model_part_name": reference, "variable_name": variable, "value": value});
+            deck.process("assign_vector_variable_to_conditions_process", settings);
+        }
+        let ran = deck.run();
+        ran.displacements(&grid).into_iter().take(36).collect::<Vec<Vec3>>()
+    };
+    let (found, expected) = (run(true), run(false));
+    let size = expected.iter().flatten().fold(0.0_f64, |most, u| most.max(u.abs()));
+    let off = found.iter().zip(&expected).flat_map(|(a, b)| sub(*a, *b)).fold(0.0_f64, |m, u| m.max(u.abs()));
+    assert!(size > 1e-3 && off < 1e-12 * size, "{off:e} of {size:e}");
 }
 
 /// Couplings that cannot be are named before the run.
