@@ -13,6 +13,7 @@ mod support;
 
 use serde_json::json;
 use slab::{Deck, Slab, material};
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use support::{Results, said, zelus};
 
@@ -303,6 +304,57 @@ fn a_bar_between_walls_expands_across() {
             assert!((u - exact).abs() < 1e-15 + 1e-9 * exact, "{u} {exact}");
         }
     }
+}
+
+/// Heat passes the section of a bolt as if it were not cut.
+#[test]
+fn heat_passes_the_section_of_a_bolt() {
+    let temperatures = [false, true].map(temperatures_of_a_bar);
+    let [whole, cut] = &temperatures;
+    assert!(whole.values().any(|value| (1.0..59.0).contains(value)));
+    for (node, value) in whole {
+        assert!((cut[node] - value).abs() < 1e-10, "{} instead of {value} at node {node}", cut[node]);
+    }
+}
+
+/// Temperatures of a bar between ends at 0 and 60, with the section of a bolt or without.
+fn temperatures_of_a_bar(is_cut: bool) -> BTreeMap<u64, f64> {
+    let slab = Slab { element: "SmallDisplacementElement", rows: 2, ..Slab::new(6) };
+    let mut warm = Deck::new("stationary", 1e12, 1e12, 2.0).set("model_part_name", json!("Warmth")).solver;
+    warm["model_import_settings"] = json!({"input_type": "use_input_model_part"});
+    let mut deck = Deck::new("ThermoMechanicallyCoupled", 1.0, 1.0, 2.0);
+    let mut structure = deck.solver.clone();
+    structure["solver_type"] = json!("Static");
+    structure["material_import_settings"]["materials_filename"] = json!("law.json");
+    deck.materials[0]["model_part_name"] = json!("Warmth.Body");
+    deck.solver = json!({"solver_type": "ThermoMechanicallyCoupled", "domain_size": 2, "structural_solver_settings": structure,
+        "thermal_solver_settings": warm});
+    let assign = |part: &str, variable: &str, value: f64| {
+        json!({"python_module": "assign_scalar_variable_process", "Parameters": {
+        "model_part_name": part, "variable_name": variable, "value": value}})
+    };
+    deck.processes = vec![
+        assign("Heat.Left", "DISPLACEMENT_X", 0.0),
+        assign("Heat.Right", "DISPLACEMENT_X", 0.0),
+        assign("Heat.Foot", "DISPLACEMENT_Y", 0.0),
+        assign("Warmth.Left", "TEMPERATURE", 0.0),
+        assign("Warmth.Right", "TEMPERATURE", 60.0),
+    ];
+    if is_cut {
+        let plane = json!({"model_part_name": "Heat.Body", "point": [0.4, 0.0, 0.0], "normal": [1.0, 0.0, 0.0],
+            "shortening": 0.0});
+        deck = deck.process("bolt_pretension_process", plane);
+    }
+    let scratch = tempfile::tempdir().unwrap();
+    deck.write(scratch.path(), &slab);
+    let law = json!({"properties": [{"model_part_name": "Heat.Body", "properties_id": 1, "Material": {
+        "constitutive_law": {"name": "LinearElasticPlaneStress2DLaw"}, "Tables": {}, "Variables": {"DENSITY": 1.0,
+        "YOUNG_MODULUS": 1e9, "POISSON_RATIO": 0.3}}}]});
+    std::fs::write(scratch.path().join("law.json"), law.to_string()).unwrap();
+    let output = zelus(scratch.path(), &["run", "ProjectParameters.json"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let results = Results::read(&scratch.path().join("results.json")).unwrap();
+    results.nodal("TEMPERATURE", 0)
 }
 
 #[test]

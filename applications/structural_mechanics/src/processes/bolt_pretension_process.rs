@@ -16,7 +16,7 @@ use zelus_core::vector3::{norm, scale};
 
 use super::bolt_section::{BoltSection, Cut};
 use super::nodal_conditions::add_conditions_to_mesh;
-use crate::variables::{DISPLACEMENT, RESULTANT_LOAD};
+use crate::variables::{DISPLACEMENT, RESULTANT_LOAD, TEMPERATURE};
 
 /// Component of the normal that is round-off.
 const ROUND_OFF: f64 = 1e-12;
@@ -122,7 +122,10 @@ fn prepare(request: &mut ProcessRequest<'_>) -> Result<()> {
     let reference = part.add_node(section.centre);
     let made = add_conditions_to_mesh(part, "ResultantLoadCondition", &[reference])?;
     let origin = format!("{} on {}", target.process, target.path);
-    let constraints = part.add_constraints(constraints(&section, first, reference, part.info.domain_size, &origin));
+    let is_warm = part.nodes.history.has(TEMPERATURE.name());
+    let constraints = constraints(&section, first, reference, part.info.domain_size, is_warm);
+    let constraints = part
+        .add_constraints(constraints.into_iter().map(|own| MasterSlaveConstraint { origin: origin.clone(), ..own }));
     let copies = first..first + section.nodes.len() as u32;
     let mut own = SubPart {
         nodes: section.nodes.iter().copied().chain(copies).chain([reference]).collect(),
@@ -141,28 +144,26 @@ fn leading(normal: [f64; 3]) -> usize {
     (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0)
 }
 
-/// u⁺ = u⁻ − u_ref at the nodes of a section, and u_ref along the normal.
+/// u⁺ = u⁻ − u_ref at the nodes of a section, u_ref along the normal, and one temperature on both sides.
 fn constraints(
     section: &BoltSection,
     first: u32,
     reference: u32,
     space: usize,
-    origin: &str,
+    is_warm: bool,
 ) -> Vec<MasterSlaveConstraint> {
     let lead = leading(section.normal);
     let unknown = |node: u32, c: usize| (node, DISPLACEMENT.component(c as u8));
     let share = |c: usize| section.normal[c] / section.normal[lead];
-    let follows = |slave, masters| MasterSlaveConstraint {
-        origin: origin.to_owned(),
-        ..MasterSlaveConstraint::new(slave, masters)
-    };
+    let follows = MasterSlaveConstraint::new;
     let led = |c: usize, factor: f64| (share(c) != 0.0).then(|| (unknown(reference, lead), factor * share(c)));
     let of_node = |(copy, &node): (u32, &u32)| {
         let of_component = move |c: usize| {
             let masters = [(unknown(node, c), 1.0)].into_iter().chain(led(c, -1.0)).collect();
             follows(unknown(copy, c), masters)
         };
-        (0..space).map(of_component).collect::<Vec<_>>()
+        let warm = follows((copy, TEMPERATURE.scalar()), vec![((node, TEMPERATURE.scalar()), 1.0)]);
+        (0..space).map(of_component).chain(is_warm.then_some(warm)).collect::<Vec<_>>()
     };
     let of_nodes = (first..).zip(&section.nodes).flat_map(of_node);
     let along = (0..space).filter(|&c| c != lead);
