@@ -10,6 +10,7 @@ mod deck;
 mod elastic;
 mod grid;
 mod large_strain;
+mod orthotropic;
 mod plastic;
 mod resultants;
 mod springs;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use zelus::structural_mechanics::variables::{DISPLACEMENT, TEMPERATURE};
+use zelus::structural_mechanics::variables::{DISPLACEMENT, LOCAL_AXIS_1, LOCAL_AXIS_2, TEMPERATURE};
 use zelus_core::entities::{BlockRequest, EntityBlock, LocalSystems, Request, Tangent, block_factory};
 use zelus_core::geometry::Shape;
 use zelus_core::model::{
@@ -48,7 +48,7 @@ pub fn cell(shape: Shape, space: usize, amount: f64, random: &mut Random) -> Vec
 
 /// Properties of every specimen. Bodies have the temperature at which laws that expand are without strain. Yielding begins far below
 /// the strains of the tests: differences taken across its beginning are no derivatives.
-const USUAL: [(&str, f64); 10] = [
+const USUAL: [(&str, f64); 19] = [
     ("REFERENCE_TEMPERATURE", 0.0),
     ("CONDUCTIVITY", 0.7),
     ("SPECIFIC_HEAT", 2.0),
@@ -59,6 +59,15 @@ const USUAL: [(&str, f64); 10] = [
     ("YIELD_STRESS", 0.01),
     ("ISOTROPIC_HARDENING_MODULUS", 10.0),
     ("HARDENING_MODULUS_1D", 10.0),
+    ("YOUNG_MODULUS_X", 120.0),
+    ("YOUNG_MODULUS_Y", 80.0),
+    ("YOUNG_MODULUS_Z", 60.0),
+    ("POISSON_RATIO_XY", 0.3),
+    ("POISSON_RATIO_YZ", 0.2),
+    ("POISSON_RATIO_XZ", 0.25),
+    ("SHEAR_MODULUS_XY", 40.0),
+    ("SHEAR_MODULUS_YZ", 20.0),
+    ("SHEAR_MODULUS_XZ", 30.0),
 ];
 
 /// Which loads a specimen carries.
@@ -221,14 +230,27 @@ pub fn is_axisymmetric(entry: &EntityKind) -> bool {
     entry.name.contains("Axisym")
 }
 
-/// Gives the entity and its nodes a value of every variable of the wanted sort.
+/// Axes of the material: perpendicular, and none along an axis of the space.
+fn axes(space: usize) -> [(&'static str, Vec3); 2] {
+    let first = if space == 3 { [0.6, 0.64, 0.48] } else { [0.6, 0.8, 0.0] };
+    [(LOCAL_AXIS_1.name(), first), (LOCAL_AXIS_2.name(), [-0.8, 0.48, 0.36])]
+}
+
+/// Gives the entity and its nodes a value of every variable of the wanted sort, and the entity its axes.
 fn load(part: &mut ModelPart, entry: &EntityKind, loads: Loads) {
     let wanted = if loads == Loads::Scalars { VariableKind::Scalar } else { VariableKind::Vector3 };
     let mut random = Random(5);
     let data = if entry.role == EntityRole::Element { &mut part.elements.data } else { &mut part.conditions.data };
     // constants that resist rotations are refused
     let bare = [DISPLACEMENT.name(), TEMPERATURE.name()];
-    let taken = |name: &str| bare.contains(&name) || name.contains("ROTATIONAL") || name == "NODAL_INERTIA";
+    let axes = axes(entry.space);
+    let own = |name: &str| axes.iter().any(|(axis, _)| *axis == name);
+    let taken =
+        |name: &str| bare.contains(&name) || own(name) || name.contains("ROTATIONAL") || name == "NODAL_INERTIA";
+    for (name, axis) in axes {
+        data.add_named(name, 3);
+        data.get_mut(name).expect("added above").levels[0].copy_from_slice(&axis);
+    }
     for variable in variables().values().filter(|v| v.kind == wanted && !taken(v.name)) {
         let components = if loads == Loads::Scalars { 1 } else { 3 };
         for fields in [&mut *data, &mut part.nodes.history] {

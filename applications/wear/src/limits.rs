@@ -6,6 +6,7 @@ use zelus_core::geometry::Shape;
 use zelus_core::geometry::mapping::{domain_size, is_inverted, shortest_node_distance};
 use zelus_core::model::ModelPart;
 use zelus_core::{Error, Result};
+use zelus_structural_mechanics::laws::representative_young;
 
 use crate::removal::NodalWear;
 use crate::sliding::SlidingPoint;
@@ -80,7 +81,7 @@ pub fn warn_of_oscillation<'a>(
     part: &ModelPart,
     points: impl Iterator<Item = (&'a SlidingPoint<'a>, f64)>,
 ) -> Option<Diagnostic> {
-    let young = |of: usize| part.properties.get(&of).and_then(|own| own.number("YOUNG_MODULUS"));
+    let young = |of: usize| part.properties.get(&of).and_then(representative_young);
     let ratio = |(point, depth): (&SlidingPoint<'a>, f64)| {
         let [slave, master] = point.facets.map(|facet| young(facet.properties).map_or(0.0, f64::recip));
         let softness = slave + master;

@@ -10,6 +10,7 @@ use zelus_core::geometry::{Shape, reversed};
 use zelus_core::model::flags::INTERFACE;
 use zelus_core::model::{ModelPart, ScalarVariable, SubPart};
 use zelus_core::vector3::{add, dot, norm, scale, sub};
+use zelus_structural_mechanics::laws::representative_young;
 
 use super::facet::{Facet, FacetSource, Roles};
 use crate::flags::{MASTER, SLAVE};
@@ -442,7 +443,7 @@ fn facet(part: &ModelPart, face: &ElementFace, mut nodes: Vec<u32>, source: Face
         FacetSource::Condition(at) => Some(part.conditions.properties[at as usize]),
         FacetSource::Face(_) => None,
     };
-    let elastic = |id: &usize| part.properties.get(id).is_some_and(|p| p.number("YOUNG_MODULUS").is_some());
+    let elastic = |id: &usize| part.properties.get(id).is_some_and(|p| representative_young(p).is_some());
     let properties = own.filter(elastic).unwrap_or(part.elements.properties[element as usize]);
     Ok(Facet { nodes, shape, source, element, properties, role: Roles::Open })
 }

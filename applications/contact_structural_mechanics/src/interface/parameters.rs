@@ -4,6 +4,7 @@
 //! without facets does not count, nor does a slave side without Young's modulus.
 
 use zelus_core::model::{ModelPart, ProcessInfo};
+use zelus_structural_mechanics::laws::representative_young;
 
 use super::facet::Roles;
 use super::facets::Interface;
@@ -80,7 +81,7 @@ pub fn alm_parameters(
         let (mut area, mut stiffness, mut length) = (0.0, 0.0, 0.0);
         for facet in interfaces.iter().flat_map(|i| &i.facets).filter(|f| f.role == role || f.role == Roles::Open) {
             let size = facet.size(part);
-            let young = part.properties.get(&facet.properties).and_then(|p| p.number("YOUNG_MODULUS")).unwrap_or(0.0);
+            let young = part.properties.get(&facet.properties).and_then(representative_young).unwrap_or(0.0);
             area += size;
             stiffness += young * size;
             length += size / facet.nodes.len() as f64 * facet.nodes.iter().map(|&n| sizes[n as usize]).sum::<f64>();

@@ -17,6 +17,7 @@ use zelus_core::entities::{
 use zelus_core::model::{EntityRole, MasterSlaveConstraint, ModelPart, Nodes};
 use zelus_core::vector3::{dot, norm, scale};
 use zelus_core::{Result, State, StateMapper};
+use zelus_structural_mechanics::laws::representative_young;
 use zelus_structural_mechanics::variables::{NORMAL, REACTION};
 
 use super::mpc_friction::{MpcFriction, reaction};
@@ -320,7 +321,7 @@ impl Interaction for MpcInteraction {
         part.info.marks.insert(CONTACT, true);
         self.first_id = part.constraints.iter().map(|c| c.id + 1).max().unwrap_or(1);
         let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, f64::max);
-        let young = |id| part.properties.get(id).and_then(|properties| properties.number("YOUNG_MODULUS"));
+        let young = |id| part.properties.get(id).and_then(representative_young);
         let facets = self.interfaces.iter().flat_map(|i| &i.facets);
         self.young = largest(&mut facets.filter_map(|facet| young(&facet.properties)));
         if self.young == 0.0 {

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use zelus_core::geometry::mapping::domain_size;
 use zelus_core::model::ModelPart;
+use zelus_structural_mechanics::laws::representative_young;
 
 use super::candidates::FacetExtent;
 use super::open_sides::OpenSides;
@@ -52,7 +53,7 @@ type Measures = [f64; 4];
 fn measures(part: &ModelPart, interface: &Interface, known: &OpenSides<'_>, surface: &[u32]) -> Measures {
     let [mut size, mut modulus, mut area, mut slaves] = [0.0; 4];
     for facet in surface.iter().map(|&facet| &interface.facets[facet as usize]) {
-        let young = part.properties.get(&facet.properties).and_then(|p| p.number("YOUNG_MODULUS")).unwrap_or(0.0);
+        let young = part.properties.get(&facet.properties).and_then(representative_young).unwrap_or(0.0);
         let own = initial_size(part, facet);
         size += cell_size(facet, own);
         modulus += young * own;

@@ -162,9 +162,10 @@ where
     fn new(request: &BlockRequest<'_>) -> Result<Self> {
         let shape = Shape::of(DIM, NODES).expect("registered for known shapes only");
         let mut materials = Material::all(request, shape, DIM == 2, false)?;
-        let asks = |material: &Material<S>| match (material.law.expands(), material.law.softens()) {
-            (true, _) => Some("temperature at its Gauss points"),
-            (_, true) => Some("band in which it softens"),
+        let asks = |material: &Material<S>| match &material.law {
+            law if law.expands() => Some("temperature at its Gauss points"),
+            law if law.softens() => Some("band in which it softens"),
+            law if law.has_axes() => Some("axes of the material"),
             _ => None,
         };
         if let Some(what) = materials.iter().find_map(asks) {

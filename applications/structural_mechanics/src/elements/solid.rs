@@ -143,6 +143,9 @@ where
     fn state(&self, entity: &EntityView<'_, NODES>, view: &StepView<'_>) -> Result<Box<[f64]>, String> {
         let material = self.material(entity);
         let table = material.rule;
+        if material.law.has_axes() {
+            Self::axes(entity, view)?;
+        }
         material.accepts_band(&|| band::width(table, &entity.initial, view.info.has(BANDS_AS_KRATOS)))?;
         if (0..table.len()).all(|g| Self::initial_weight(table, g, entity) > 0.0) {
             Ok(vec![0.0; table.len() * material.law.history()].into())

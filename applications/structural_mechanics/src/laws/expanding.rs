@@ -81,6 +81,10 @@ impl<const S: usize> ConstitutiveLaw<S> for Expanding<S> {
         true
     }
 
+    fn has_axes(&self) -> bool {
+        self.law.has_axes()
+    }
+
     fn history(&self) -> usize {
         self.law.history()
     }
@@ -143,6 +147,10 @@ impl ConstitutiveLaw<3> for ExpandingPlane {
 
     fn expands(&self) -> bool {
         true
+    }
+
+    fn has_axes(&self) -> bool {
+        self.0.has_axes()
     }
 
     fn history(&self) -> usize {
@@ -254,6 +262,10 @@ register_expanding! {
     plane_strain "HyperElasticPlaneStrain2DLaw"
     revolution "HyperElasticAxisym2DLaw"
     space "HyperElasticIsotropicQuasiIncompressibleIshochoricNeoHookean3D"
+    space "LinearElasticOrthotropic3DLaw"
+    plane_strain "LinearElasticOrthotropicPlaneStrain2DLaw"
+    plane_stress "LinearElasticOrthotropic2DLaw"
+    revolution "LinearElasticOrthotropicAxisym2DLaw"
     bar "TrussConstitutiveLaw"
     bar "TrussPlasticityConstitutiveLaw"
 }

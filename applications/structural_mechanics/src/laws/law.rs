@@ -32,6 +32,8 @@ pub struct StrainState<'a, const S: usize> {
     pub band_as_kratos: bool,
     /// Whether the history stays as it is: the point neither yields nor is damaged further.
     pub elastic: bool,
+    /// Axes of the element as rows, where it has some and the law asks for them ([`ConstitutiveLaw::has_axes`]); else those of the space.
+    pub axes: Option<Tensor>,
     /// History of the law at the last accepted step: [`ConstitutiveLaw::history`] numbers.
     pub history: &'a [f64],
 }
@@ -48,13 +50,14 @@ impl<'a, const S: usize> StrainState<'a, S> {
         band: 0.0,
         band_as_kratos: false,
         elastic: false,
+        axes: None,
         history: &[],
     };
 
     /// The same with other components of strain.
     pub fn with_strain<const T: usize>(self, strain: [f64; T]) -> StrainState<'a, T> {
-        let Self { f, det_f, small, pressure, temperature, band, band_as_kratos, elastic, history, .. } = self;
-        StrainState { strain, f, det_f, small, pressure, temperature, band, band_as_kratos, elastic, history }
+        let Self { f, det_f, small, pressure, temperature, band, band_as_kratos, elastic, axes, history, .. } = self;
+        StrainState { strain, f, det_f, small, pressure, temperature, band, band_as_kratos, elastic, axes, history }
     }
 }
 
@@ -104,6 +107,11 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
 
     /// Whether the stress depends on the temperature.
     fn expands(&self) -> bool {
+        false
+    }
+
+    /// Whether the stress depends on the axes of the material.
+    fn has_axes(&self) -> bool {
         false
     }
 
@@ -196,6 +204,8 @@ registered_kind! {
         build: LawFactory;
         /// Constants that not every law takes.
         takes: &'static [&'static str] = &[],
+        /// Whether its stress depends on the axes of the material.
+        has_axes: bool = false,
     }
 }
 
@@ -205,6 +215,15 @@ impl LawEntry {
         let expanded = self.name.strip_prefix("Thermal").and_then(find::<Self>);
         self.takes.contains(&name) || expanded.is_some_and(|law| law.takes.contains(&name))
     }
+}
+
+/// Whether the law of the properties, or of one of their layers, depends on the axes of the material.
+pub fn has_axes(properties: &Properties) -> bool {
+    let own = properties.law.as_deref().and_then(find::<LawEntry>);
+    let expanded = || own.and_then(|law| law.name.strip_prefix("Thermal")).and_then(find::<LawEntry>);
+    own.is_some_and(|law| law.has_axes)
+        || expanded().is_some_and(|law| law.has_axes)
+        || properties.parts.iter().any(has_axes)
 }
 
 /// Laws for `S` Voigt components.

@@ -22,6 +22,11 @@ mod j2;
 mod kirchhoff_saint_venant;
 mod law;
 mod linear_elastic;
+mod linear_elastic_orthotropic;
+mod material_axes;
+mod orthotropic_elasticity;
+#[cfg(test)]
+mod orthotropic_tests;
 mod parallel_mixture;
 mod quantity;
 #[cfg(test)]
@@ -43,8 +48,13 @@ pub use hyper_elastic::HyperElastic;
 pub use isochoric_neo_hooke::IsochoricNeoHooke;
 pub use j2::J2;
 pub use kirchhoff_saint_venant::KirchhoffSaintVenant;
-pub use law::{ConstitutiveLaw, LawEntry, LawFactory, MakeLaw, MakesLaw, Matrix, StrainState, StressMeasure, law_of};
+pub use law::{
+    ConstitutiveLaw, LawEntry, LawFactory, MakeLaw, MakesLaw, Matrix, StrainState, StressMeasure, has_axes, law_of,
+};
 pub use linear_elastic::LinearElastic;
+pub use linear_elastic_orthotropic::LinearElasticOrthotropic;
+pub(crate) use material_axes::of_element as axes_of_element;
+pub use orthotropic_elasticity::{OrthotropicElasticity, representative_young};
 pub use parallel_mixture::ParallelMixture;
 pub use small_strain_plasticity::{PLASTIC_WORK, SmallStrainPlasticity};
 pub use thermal_elastic::ThermalElastic;

@@ -1,14 +1,15 @@
 //! Layers that strain alike: S = Σ f_i S_i(E), the factors f_i scaled to add up to one.
 //!
-//! Each layer is a law with properties of its own (`sub_properties` of the material) and its own history. Laws here are isotropic, so
-//! that the directions of layers (LAYER_EULER_ANGLES) do not matter.
+//! Each layer is a law with properties of its own (`sub_properties` of the material) and its own history. LAYER_EULER_ANGLES, three
+//! angles a layer, turn the axes of each layer against those of the element, as EULER_ANGLES do ([`super::material_axes`]).
 
-use crate::laws::LawEntry;
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::model::Properties;
 use zelus_core::register;
 
-use super::law::{ConstitutiveLaw, LawFactory, MakesLaw, Matrix, StrainState, StressMeasure, law_of};
+use super::law::{ConstitutiveLaw, LawEntry, LawFactory, MakesLaw, Matrix, StrainState, StressMeasure, law_of};
+use super::material_axes;
+use crate::tensor::Tensor;
 
 /// Key beside the name of the law: one share for each layer.
 const FACTORS: &str = "combination_factors";
@@ -16,6 +17,8 @@ const FACTORS: &str = "combination_factors";
 /// Sum of laws, weighted.
 pub struct ParallelMixture<const S: usize> {
     layers: Vec<(f64, Box<dyn ConstitutiveLaw<S>>)>,
+    /// Axes of each layer in those of the element; empty where they are the same.
+    axes: Vec<Tensor>,
 }
 
 impl<const S: usize> ParallelMixture<S> {
@@ -45,7 +48,9 @@ impl<const S: usize> ParallelMixture<S> {
             let fact = format!("a layer of properties {} leaves the volume to the element", properties.id);
             return Err(problem(fact, "use HyperElastic3DLaw").into());
         }
-        Ok(Box::new(Self { layers }))
+        let has_axes = layers.iter().any(|(_, law)| law.has_axes());
+        let axes = if has_axes { material_axes::of_layers(properties, layers.len(), S < 6)? } else { Vec::new() };
+        Ok(Box::new(Self { layers, axes }))
     }
 
     /// Each layer with its factor and its part of the history.
@@ -54,10 +59,11 @@ impl<const S: usize> ParallelMixture<S> {
         state: &StrainState<'a, S>,
     ) -> impl Iterator<Item = (f64, &'a dyn ConstitutiveLaw<S>, StrainState<'a, S>)> {
         let (state, mut rest) = (*state, state.history);
-        self.layers.iter().map(move |(factor, law)| {
+        self.layers.iter().enumerate().map(move |(at, (factor, law))| {
             let (own, others) = rest.split_at(law.history());
             rest = others;
-            (*factor, law.as_ref(), StrainState { history: own, ..state })
+            let turned = self.axes.get(at).map(|turn| state.axes.map_or(*turn, |axes| turn * axes));
+            (*factor, law.as_ref(), StrainState { history: own, axes: turned.or(state.axes), ..state })
         })
     }
 
@@ -103,6 +109,10 @@ impl<const S: usize> ConstitutiveLaw<S> for ParallelMixture<S> {
 
     fn expands(&self) -> bool {
         self.layers.iter().any(|(_, law)| law.expands())
+    }
+
+    fn has_axes(&self) -> bool {
+        self.layers.iter().any(|(_, law)| law.has_axes())
     }
 
     fn softens(&self) -> bool {

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::variables::{DISPLACEMENT, TEMPERATURE};
+use crate::variables::{DISPLACEMENT, LOCAL_AXIS_1, LOCAL_AXIS_2, TEMPERATURE};
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{ELASTIC, EntityView, StepView};
 use zelus_core::geometry::ShapeTable;
@@ -12,7 +12,7 @@ use crate::elements::band::{self, BANDS_AS_KRATOS};
 use crate::elements::formulation::Formulation;
 use crate::elements::gradients::{determinant, gradient, nodal_vectors, padded, physical_gradients};
 use crate::elements::material::{Material, NO_TEMPERATURE};
-use crate::laws::StrainState;
+use crate::laws::{StrainState, axes_of_element};
 use crate::tensor::{IDENTITY, Tensor, inverse, pairs, strain_vector, stress_tensor};
 
 /// One Gauss point of one element.
@@ -54,6 +54,8 @@ pub(super) struct ElementMotion<const NODES: usize> {
     band: (f64, bool),
     /// Whether the history of the law stays as it is.
     elastic: bool,
+    /// Axes of the material, where the law asks for them.
+    axes: Result<Option<Tensor>, &'static str>,
 }
 
 impl<const NODES: usize> ElementMotion<NODES> {
@@ -81,11 +83,12 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         let width = if material.law.softens() { band::width(material.rule, &entity.initial, as_kratos) } else { 0.0 };
         let band = (width, as_kratos);
         let elastic = view.info.has(ELASTIC);
+        let axes = if material.law.has_axes() { Self::axes(entity, view) } else { Ok(None) };
         let displacement = nodal_vectors(entity, view, &DISPLACEMENT);
         let column = view.nodes.history.values(&TEMPERATURE, 0);
         let temperatures = (!column.is_empty()).then(|| entity.scalars(column));
         if !F::FINITE {
-            return ElementMotion { u: displacement, ahead: None, temperatures, band, elastic };
+            return ElementMotion { u: displacement, ahead: None, temperatures, band, elastic, axes };
         }
         let (x, initial) = (&entity.current, &entity.initial);
         let nodes = |of: &dyn Fn(usize, usize) -> f64| {
@@ -103,7 +106,19 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             };
             [nodes(&|i, c| x[i][c] - initial[i][c] - (displacement[i][c] - old[i][c])), old]
         });
-        ElementMotion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead, temperatures, band, elastic }
+        ElementMotion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead, temperatures, band, elastic, axes }
+    }
+
+    /// Axes of the material of an element.
+    ///
+    /// # Errors
+    /// Axes that are not perpendicular, or incomplete.
+    pub(super) fn axes(entity: &EntityView<'_, NODES>, view: &StepView<'_>) -> Result<Option<Tensor>, &'static str> {
+        let axis = |variable| match view.elements.data.values(variable, 0) {
+            [] => [0.0; 3],
+            column => std::array::from_fn(|c| column[3 * entity.index as usize + c]),
+        };
+        axes_of_element(axis(&LOCAL_AXIS_1), axis(&LOCAL_AXIS_2), DIM == 2)
     }
 
     /// Volume on the initial configuration that Gauss point `g` stands for, without thickness.
@@ -236,6 +251,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
                 band: motion.band.0,
                 band_as_kratos: motion.band.1,
                 elastic: motion.elastic,
+                axes: motion.axes?,
                 history: material.remembered(g, state),
             },
         })

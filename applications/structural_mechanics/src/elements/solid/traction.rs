@@ -25,6 +25,8 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             Some("its law has a history at Gauss points, and faces have none")
         } else if material.law.expands() {
             Some("its law depends on the temperature")
+        } else if material.law.has_axes() {
+            Some("its law depends on the axes of the material, which faces do not have")
         } else if F::CONSTANT_PRESSURE {
             Some("its pressure is one number for the whole element")
         } else if F::PRESENT && material.law.ignores_measure(false) {
