@@ -105,6 +105,57 @@ fn a_bar_is_loaded_unloaded_and_loaded_the_other_way() {
     }
 }
 
+/// A bar under strain that goes to and fro. Prager's hardening is exact: σ = σ_y + E C/(E + C) (ε − σ_y/E), and yielding the other way
+/// begins 2 σ_y below the reversal (1e-9 of the iteration). Armstrong and Frederick's loop is σ = X ± σ_y with X = ± C/γ + (X_0 ∓ C/γ)
+/// exp(∓ γ (ε_p − ε_p0)) over each branch: 6e-3 of C/γ for 100 steps a branch, first order in the step.
+#[test]
+fn a_bar_with_kinematic_hardening_in_a_loop() {
+    let (young, yield_stress, modulus, rate) = (200.0, 0.4, 40.0, 80.0);
+    let hex = Grid::new(Shape::Hex8, &[1, 1, 1], |p| p);
+    let ring = Grid::new(Shape::Quad8, &[1, 1], |p| [p[0], p[1], 0.0]);
+    let cases = [
+        ("SmallDisplacementElement", "SmallStrainKinematicPlasticity3DVonMisesVonMises", &hex),
+        ("SmallDisplacementBbarElement", "SmallStrainKinematicPlasticity3DVonMisesVonMises", &hex),
+        ("AxisymSmallDisplacementElement", "SmallStrainKinematicPlasticityAxisymVonMisesVonMises", &ring),
+    ];
+    for (element, law, grid) in cases {
+        // stress along y at the ends 0.02, -0.02 and 0.02 of the branches
+        let run = |kind: usize, parameters: Value, steps: usize| {
+            let variables = json!({"YOUNG_MODULUS": young, "POISSON_RATIO": 0.3, "YIELD_STRESS": yield_stress,
+                "KINEMATIC_HARDENING_TYPE": kind, "KINEMATIC_PLASTICITY_PARAMETERS": parameters});
+            let mut deck = Deck::new(grid, element, law, variables);
+            deck.steps(1.0 / steps as f64, 3.0).gauss("CAUCHY_STRESS_VECTOR").gauss("PLASTIC_STRAIN_VECTOR");
+            deck.gauss("BACK_STRESS_VECTOR");
+            for axis in 0..grid.shape.dim() {
+                deck.fix(|p| p[axis] == 0.0, std::array::from_fn(|a| if a == axis { json!(0.0) } else { FREE }));
+            }
+            deck.fix(|p| p[1] == 1.0, [FREE, json!("0.02*(t-1.5*(abs(t-1)+t-1)+2*(abs(t-2)+t-2))"), FREE]);
+            deck.run()
+        };
+        let at = |ran: &super::deck::Ran, name: &str, step: usize| ran.gauss(name, step)[0].1[1];
+        let tangent = young * modulus / (young + modulus);
+        let first = yield_stress + tangent * (0.02 - yield_stress / young);
+        let second = first - 2.0 * yield_stress - tangent * (0.04 - 2.0 * yield_stress / young);
+        let linear = run(0, json!([modulus]), 4);
+        assert_close(at(&linear, "CAUCHY_STRESS_VECTOR", 3), first, 1e-9, &format!("{element} pulled"));
+        assert_close(at(&linear, "CAUCHY_STRESS_VECTOR", 7), second, 1e-9, &format!("{element} pushed"));
+        assert_close(at(&linear, "BACK_STRESS_VECTOR", 7), (second + yield_stress) / 1.5, 1e-9, "the back stress");
+
+        let steps = 100;
+        let loops = run(1, json!([modulus, rate]), steps);
+        let (limit, mut back, mut before, mut worst) = (modulus / rate, 0.0, 0.0, 0.0_f64);
+        for (branch, sign) in [1.0, -1.0, 1.0].into_iter().enumerate() {
+            let step = (branch + 1) * steps - 1;
+            let plastic = at(&loops, "PLASTIC_STRAIN_VECTOR", step);
+            back = sign * limit + (back - sign * limit) * f64::exp(-sign * rate * (plastic - before));
+            before = plastic;
+            worst = worst.max((at(&loops, "CAUCHY_STRESS_VECTOR", step) - back - sign * yield_stress).abs() / limit);
+        }
+        println!("{element}: loop of Armstrong and Frederick off by {worst:.2e} of C/γ");
+        assert!(worst < 6e-3, "{element}: {worst:e}");
+    }
+}
+
 /// Under finite strain Kirchhoff stress over logarithmic strain is the same law: after pulling to twice the length
 /// τ = σ_y + E H/(E + H) (ln 2 − σ_y/E). The element is free to contract; 1e-8 of the iteration.
 #[test]

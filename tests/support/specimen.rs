@@ -138,6 +138,9 @@ impl Specimen {
         properties.law = law.map(str::to_owned);
         let numbers = values.iter().map(|(name, value)| (name.clone(), PropertyValue::Number(*value)));
         properties.values.extend(numbers);
+        // Armstrong–Frederick's, whose tangent is not symmetric
+        let hardening = PropertyValue::Vector(vec![20.0, 30.0]);
+        properties.values.insert("KINEMATIC_PLASTICITY_PARAMETERS".to_owned(), hardening);
         part.properties.insert(1, properties);
         let table = if entry.role == EntityRole::Element { &mut part.elements } else { &mut part.conditions };
         table.push(1, entry, 1, nodes);

@@ -271,8 +271,8 @@ pub const BAD_DECKS: &[BadDeck] = &[
     materials(
         "kinematic hardening",
         "LinearElasticPlaneStrain2DLaw",
-        "ConstitutiveLawsApplication.SmallStrainKinematicPlasticityPlaneStrainVonMisesVonMises",
-        &["isotropic hardening is, SmallStrainJ2Plasticity3DLaw"],
+        "ConstitutiveLawsApplication.FiniteStrainKinematicPlasticityPlaneStrainVonMisesVonMises",
+        &["under small strain: SmallStrainKinematicPlasticity3DVonMisesVonMises"],
     ),
     materials(
         "plasticity without a yield stress",

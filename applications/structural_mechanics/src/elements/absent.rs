@@ -28,8 +28,11 @@ register_absent! { ElementEntry ["SmallDisplacementMixedStrain", "SmallDisplacem
 register_absent! { ElementEntry ["TotalLagrangianQ1P0"] =>
 "in the plane use TotalLagrangianMixedVolumetricStrainElement2D3N: no planar law leaves the volume to the element" }
 
-register_absent! { LawEntry ["SmallStrainKinematicPlasticity", "FiniteStrainKinematicPlasticity", "PlasticityIsotropicKinematic"] =>
-"kinematic hardening is not there: isotropic hardening is, SmallStrainJ2Plasticity3DLaw" }
+register_absent! { LawEntry ["SmallStrainKinematicPlasticity"] =>
+"of kinematic hardening VonMisesVonMises is there, in space, plane strain and with axial symmetry" }
+
+register_absent! { LawEntry ["FiniteStrainKinematicPlasticity", "PlasticityIsotropicKinematic"] =>
+"kinematic hardening is there under small strain: SmallStrainKinematicPlasticity3DVonMisesVonMises" }
 
 register_absent! { LawEntry ["SmallStrainIsotropicPlasticity", "FiniteStrainIsotropicPlasticity"] =>
 "of yield surfaces and potentials only VonMisesVonMises is there, in space and plane strain" }

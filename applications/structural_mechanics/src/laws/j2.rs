@@ -11,7 +11,7 @@ use super::elastic::Elasticity;
 use super::hardening::Hardening;
 
 /// Excess over the yield stress, relative to it, that still counts as elastic: round-off of accepted states.
-const ON_SURFACE: f64 = 1e-12;
+pub(super) const ON_SURFACE: f64 = 1e-12;
 
 /// Constants of the material.
 #[derive(Debug, Clone, PartialEq)]

@@ -20,6 +20,10 @@ mod hyper_elastic;
 mod isochoric_neo_hooke;
 mod j2;
 mod kirchhoff_saint_venant;
+mod kinematic_hardening;
+mod kinematic_plasticity;
+#[cfg(test)]
+mod kinematic_tests;
 mod law;
 mod linear_elastic;
 mod linear_elastic_orthotropic;
@@ -47,6 +51,8 @@ pub use hooke::Hooke;
 pub use hyper_elastic::HyperElastic;
 pub use isochoric_neo_hooke::IsochoricNeoHooke;
 pub use j2::J2;
+pub use kinematic_hardening::{KinematicHardening, KinematicReturn};
+pub use kinematic_plasticity::KinematicPlasticity;
 pub use kirchhoff_saint_venant::KirchhoffSaintVenant;
 pub use law::{
     ConstitutiveLaw, LawEntry, LawFactory, MakeLaw, MakesLaw, Matrix, StrainState, StressMeasure, has_axes, law_of,
