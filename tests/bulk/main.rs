@@ -6,6 +6,7 @@
 mod bolts;
 mod convergence;
 mod couplings;
+mod creep;
 mod deck;
 mod elastic;
 mod grid;

@@ -48,7 +48,7 @@ pub fn cell(shape: Shape, space: usize, amount: f64, random: &mut Random) -> Vec
 
 /// Properties of every specimen. Bodies have the temperature at which laws that expand are without strain. Yielding begins far below
 /// the strains of the tests: differences taken across its beginning are no derivatives.
-const USUAL: [(&str, f64); 19] = [
+const USUAL: [(&str, f64); 21] = [
     ("REFERENCE_TEMPERATURE", 0.0),
     ("CONDUCTIVITY", 0.7),
     ("SPECIFIC_HEAT", 2.0),
@@ -59,6 +59,8 @@ const USUAL: [(&str, f64); 19] = [
     ("YIELD_STRESS", 0.01),
     ("ISOTROPIC_HARDENING_MODULUS", 10.0),
     ("HARDENING_MODULUS_1D", 10.0),
+    ("NORTON_COEFFICIENT", 0.01),
+    ("NORTON_EXPONENT", 3.0),
     ("YOUNG_MODULUS_X", 120.0),
     ("YOUNG_MODULUS_Y", 80.0),
     ("YOUNG_MODULUS_Z", 60.0),

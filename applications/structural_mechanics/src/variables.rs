@@ -70,6 +70,9 @@ register_variable! {
     kind HARDENING_CURVE: Integer = "Form of the yield stress: 3 constant, 4 polynomial, 6 through points.";
     kind KINEMATIC_HARDENING_TYPE: Integer = "Form of kinematic hardening: 0 linear (Prager), 1 Armstrong–Frederick.";
     kind KINEMATIC_PLASTICITY_PARAMETERS: Vector = "Modulus C (force per area) and rate γ of kinematic hardening; C alone where it is linear.";
+    kind NORTON_COEFFICIENT: Scalar = "Factor A of the creep rate A q^n t^m (area^n per force^n per time^(1+m)).";
+    kind NORTON_EXPONENT: Scalar = "Exponent n of the von Mises stress in the creep rate, from 1.";
+    kind NORTON_TIME_EXPONENT: Scalar = "Exponent m of TIME in the creep rate, above -1; 0 where it is not given: steady creep.";
     kind CURVE_FITTING_PARAMETERS: Vector = "Coefficients of the polynomial of HARDENING_CURVE 4, constant first.";
     kind PLASTIC_STRAIN_INDICATORS: Vector = "Ends of the polynomial and the straight part of HARDENING_CURVE 4.";
     kind TANGENCY_REGION2: Boolean = "Whether the straight part of HARDENING_CURVE 4 keeps the polynomial's last slope.";
@@ -95,6 +98,8 @@ register_variable! {
     kind ACCUMULATED_PLASTIC_STRAIN: Scalar = "The same number as EQUIVALENT_PLASTIC_STRAIN.";
     kind PLASTIC_STRAIN_VECTOR: Vector = "Plastic strain (logarithmic under finite strain), components as STRAIN.";
     kind UNIAXIAL_STRESS: Scalar = "Stress that yielding or damage compares: von Mises stress of the whole Kirchhoff stress, less the back stress, or the equivalent stress of the undamaged (force per area).";
+    kind EQUIVALENT_CREEP_STRAIN: Scalar = "Equivalent creep strain ∫ √(2/3) ‖dε_c‖.";
+    kind CREEP_STRAIN_VECTOR: Vector = "Creep strain, components as STRAIN.";
     kind BACK_STRESS_VECTOR: Vector = "Centre of the yield surface of laws with kinematic hardening, components as CAUCHY_STRESS_VECTOR.";
     kind CAUCHY_STRESS_VECTOR: Vector = "Cauchy stress: xx yy (zz) xy (yz xz) (force per area).";
     kind PK2_STRESS_VECTOR: Vector = "Second Piola–Kirchhoff stress, components as CAUCHY_STRESS_VECTOR.";

@@ -165,6 +165,7 @@ where
         let asks = |material: &Material<S>| match &material.law {
             law if law.expands() => Some("temperature at its Gauss points"),
             law if law.softens() => Some("band in which it softens"),
+            law if law.depends_on_time() => Some("time at its Gauss points"),
             law if law.has_axes() => Some("axes of the material"),
             _ => None,
         };

@@ -5,7 +5,7 @@
 //! initial one, hence S = θ S_m(E_m) and dS/dE = dS_m/dE_m / θ. Under plane stress the thickness expands, too; under plane strain it is
 //! held, and the mechanical strain across the plane compensates for the thermal one. The energy is by initial volume.
 //!
-//! α may follow a table over TEMPERATURE; other constants do not.
+//! α may follow a table over TEMPERATURE; other constants do where the law itself reads tables, as that of creep does.
 
 use zelus_core::diagnostics::Result;
 use zelus_core::model::Properties;
@@ -81,6 +81,10 @@ impl<const S: usize> ConstitutiveLaw<S> for Expanding<S> {
         true
     }
 
+    fn depends_on_time(&self) -> bool {
+        self.law.depends_on_time()
+    }
+
     fn has_axes(&self) -> bool {
         self.law.has_axes()
     }
@@ -147,6 +151,10 @@ impl ConstitutiveLaw<3> for ExpandingPlane {
 
     fn expands(&self) -> bool {
         true
+    }
+
+    fn depends_on_time(&self) -> bool {
+        self.0.depends_on_time()
     }
 
     fn has_axes(&self) -> bool {
@@ -262,6 +270,9 @@ register_expanding! {
     plane_strain "HyperElasticPlaneStrain2DLaw"
     revolution "HyperElasticAxisym2DLaw"
     space "HyperElasticIsotropicQuasiIncompressibleIshochoricNeoHookean3D"
+    space "SmallStrainNortonCreep3D"
+    plane_strain "SmallStrainNortonCreepPlaneStrain"
+    revolution "SmallStrainNortonCreepAxisym"
     space "SmallStrainKinematicPlasticity3DVonMisesVonMises"
     plane_strain "SmallStrainKinematicPlasticityPlaneStrainVonMisesVonMises"
     revolution "SmallStrainKinematicPlasticityAxisymVonMisesVonMises"

@@ -26,6 +26,8 @@ pub struct StrainState<'a, const S: usize> {
     pub pressure: f64,
     /// TEMPERATURE, where the law asks for it ([`ConstitutiveLaw::expands`]); 0 otherwise.
     pub temperature: f64,
+    /// TIME at the beginning and at the end of the step.
+    pub step: [f64; 2],
     /// Width of the band in which an element softens, where the law asks for it ([`ConstitutiveLaw::softens`]); 0 otherwise.
     pub band: f64,
     /// Whether damage counts as in Kratos.
@@ -47,6 +49,7 @@ impl<'a, const S: usize> StrainState<'a, S> {
         small: true,
         pressure: 0.0,
         temperature: 0.0,
+        step: [0.0; 2],
         band: 0.0,
         band_as_kratos: false,
         elastic: false,
@@ -56,8 +59,22 @@ impl<'a, const S: usize> StrainState<'a, S> {
 
     /// The same with other components of strain.
     pub fn with_strain<const T: usize>(self, strain: [f64; T]) -> StrainState<'a, T> {
-        let Self { f, det_f, small, pressure, temperature, band, band_as_kratos, elastic, axes, history, .. } = self;
-        StrainState { strain, f, det_f, small, pressure, temperature, band, band_as_kratos, elastic, axes, history }
+        let Self { f, det_f, small, pressure, temperature, step, band, band_as_kratos, elastic, axes, history, .. } =
+            self;
+        StrainState {
+            strain,
+            f,
+            det_f,
+            small,
+            pressure,
+            temperature,
+            step,
+            band,
+            band_as_kratos,
+            elastic,
+            axes,
+            history,
+        }
     }
 }
 
@@ -107,6 +124,11 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
 
     /// Whether the stress depends on the temperature.
     fn expands(&self) -> bool {
+        false
+    }
+
+    /// Whether the stress depends on the time that a step takes.
+    fn depends_on_time(&self) -> bool {
         false
     }
 

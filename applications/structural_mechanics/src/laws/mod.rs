@@ -31,6 +31,9 @@ mod material_axes;
 mod orthotropic_elasticity;
 #[cfg(test)]
 mod orthotropic_tests;
+#[cfg(test)]
+mod creep_tests;
+mod norton_creep;
 mod parallel_mixture;
 mod quantity;
 #[cfg(test)]
@@ -60,6 +63,7 @@ pub use law::{
 pub use linear_elastic::LinearElastic;
 pub use linear_elastic_orthotropic::LinearElasticOrthotropic;
 pub(crate) use material_axes::of_element as axes_of_element;
+pub use norton_creep::NortonCreep;
 pub use orthotropic_elasticity::{OrthotropicElasticity, representative_young};
 pub use parallel_mixture::ParallelMixture;
 pub use small_strain_plasticity::{PLASTIC_WORK, SmallStrainPlasticity};

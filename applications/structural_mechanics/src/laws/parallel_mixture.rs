@@ -111,6 +111,10 @@ impl<const S: usize> ConstitutiveLaw<S> for ParallelMixture<S> {
         self.layers.iter().any(|(_, law)| law.expands())
     }
 
+    fn depends_on_time(&self) -> bool {
+        self.layers.iter().any(|(_, law)| law.depends_on_time())
+    }
+
     fn has_axes(&self) -> bool {
         self.layers.iter().any(|(_, law)| law.has_axes())
     }

@@ -54,6 +54,8 @@ pub(super) struct ElementMotion<const NODES: usize> {
     band: (f64, bool),
     /// Whether the history of the law stays as it is.
     elastic: bool,
+    /// TIME at the beginning and at the end of the step.
+    step: [f64; 2],
     /// Axes of the material, where the law asks for them.
     axes: Result<Option<Tensor>, &'static str>,
 }
@@ -83,12 +85,13 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         let width = if material.law.softens() { band::width(material.rule, &entity.initial, as_kratos) } else { 0.0 };
         let band = (width, as_kratos);
         let elastic = view.info.has(ELASTIC);
+        let step = [view.info.time - view.info.delta_time, view.info.time];
         let axes = if material.law.has_axes() { Self::axes(entity, view) } else { Ok(None) };
         let displacement = nodal_vectors(entity, view, &DISPLACEMENT);
         let column = view.nodes.history.values(&TEMPERATURE, 0);
         let temperatures = (!column.is_empty()).then(|| entity.scalars(column));
         if !F::FINITE {
-            return ElementMotion { u: displacement, ahead: None, temperatures, band, elastic, axes };
+            return ElementMotion { u: displacement, ahead: None, temperatures, band, elastic, step, axes };
         }
         let (x, initial) = (&entity.current, &entity.initial);
         let nodes = |of: &dyn Fn(usize, usize) -> f64| {
@@ -106,7 +109,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             };
             [nodes(&|i, c| x[i][c] - initial[i][c] - (displacement[i][c] - old[i][c])), old]
         });
-        ElementMotion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead, temperatures, band, elastic, axes }
+        ElementMotion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead, temperatures, band, elastic, step, axes }
     }
 
     /// Axes of the material of an element.
@@ -248,6 +251,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
                 small: !F::FINITE,
                 pressure: 0.0,
                 temperature: motion.temperature(material, n)?,
+                step: motion.step,
                 band: motion.band.0,
                 band_as_kratos: motion.band.1,
                 elastic: motion.elastic,
