@@ -5,7 +5,8 @@ use zelus_core::Result;
 use zelus_core::entities::find_kind;
 use zelus_core::model::EntityRole;
 use zelus_core::parameters::Defaults;
-use zelus_core::registry::Entry;
+use zelus_core::registry::{Entry, find};
+use zelus_structural_mechanics::laws::LawEntry;
 
 /// Kinds that a deck names by a word, with the path of that word.
 const WORDS: [(&str, &str); 9] = [
@@ -61,7 +62,7 @@ pub(super) fn example(kind: &str, entry: &Entry) -> Result<Option<String>> {
             "properties_id": 1,
             "Material": {
                 "constitutive_law": { "name": name },
-                "Variables": { "YOUNG_MODULUS": 210_000.0, "POISSON_RATIO": 0.3 }
+                "Variables": constants_of(name)
             }
         }),
         _ => match WORDS.iter().find(|(word, _)| *word == kind) {
@@ -70,6 +71,39 @@ pub(super) fn example(kind: &str, entry: &Entry) -> Result<Option<String>> {
         },
     };
     Ok(Some(format!("{named:#}")))
+}
+
+/// Constants of laws that are not isotropic elasticity, with usual values (MPa, hours): an example has those that its law takes.
+const CONSTANTS: [(&str, f64); 12] = [
+    ("YOUNG_MODULUS_X", 140_000.0),
+    ("YOUNG_MODULUS_Y", 10_000.0),
+    ("YOUNG_MODULUS_Z", 10_000.0),
+    ("POISSON_RATIO_XY", 0.3),
+    ("POISSON_RATIO_YZ", 0.4),
+    ("POISSON_RATIO_XZ", 0.3),
+    ("SHEAR_MODULUS_XY", 5_000.0),
+    ("SHEAR_MODULUS_YZ", 3_500.0),
+    ("SHEAR_MODULUS_XZ", 5_000.0),
+    ("NORTON_COEFFICIENT", 1e-16),
+    ("NORTON_EXPONENT", 5.0),
+    ("YIELD_STRESS", 250.0),
+];
+
+/// Constants of a material with the law of that name.
+fn constants_of(law: &str) -> Value {
+    let takes = |name: &str| find::<LawEntry>(law).is_some_and(|law| law.takes_constant(name));
+    let mut constants = json!({});
+    if !takes("YOUNG_MODULUS_X") {
+        constants = json!({ "YOUNG_MODULUS": 210_000.0, "POISSON_RATIO": 0.3 });
+    }
+    for (name, value) in CONSTANTS.into_iter().filter(|(name, _)| takes(name)) {
+        constants[name] = json!(value);
+    }
+    if takes("KINEMATIC_PLASTICITY_PARAMETERS") {
+        constants["KINEMATIC_HARDENING_TYPE"] = json!(1);
+        constants["KINEMATIC_PLASTICITY_PARAMETERS"] = json!([20_000.0, 100.0]);
+    }
+    constants
 }
 
 /// A value within the objects of a dotted path.

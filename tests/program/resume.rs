@@ -178,6 +178,61 @@ fn a_deck_begins_with_a_restart_file_in_place_of_a_mesh() {
     assert!(said(&output).contains("Structure__restart_files/Structure_0.7.rest"), "{}", said(&output));
 }
 
+/// The back stress, the time of creep and the axes of the material are saved: a run that begins with a saved step gives the same bits.
+#[test]
+fn the_history_of_laws_is_saved() {
+    let laws = [
+        (
+            "SmallStrainKinematicPlasticityPlaneStrainVonMisesVonMises",
+            json!({"YOUNG_MODULUS": 2e9, "POISSON_RATIO": 0.3, "YIELD_STRESS": 1e3, "KINEMATIC_HARDENING_TYPE": 1,
+             "KINEMATIC_PLASTICITY_PARAMETERS": [1e9, 1e3], "ISOTROPIC_HARDENING_MODULUS": 1e8}),
+        ),
+        (
+            "SmallStrainNortonCreepPlaneStrain",
+            json!({"YOUNG_MODULUS": 2e9, "POISSON_RATIO": 0.3, "NORTON_COEFFICIENT": 1e-15, "NORTON_EXPONENT": 3.0,
+             "NORTON_TIME_EXPONENT": -0.3}),
+        ),
+        (
+            "LinearElasticOrthotropicPlaneStrain2DLaw",
+            json!({"YOUNG_MODULUS_X": 2e9, "YOUNG_MODULUS_Y": 1e9, "YOUNG_MODULUS_Z": 1e9, "POISSON_RATIO_XY": 0.3,
+             "POISSON_RATIO_YZ": 0.2, "POISSON_RATIO_XZ": 0.3, "SHEAR_MODULUS_XY": 4e8}),
+        ),
+    ];
+    for (law, variables) in laws {
+        let scratch = deck("cases/structural/bar_plane_strain", 10, |deck| {
+            let process = |name: &str, parameters: Value| json!({"python_module": name, "Parameters": parameters});
+            let processes = &mut deck["processes"];
+            processes["loads_process_list"][0]["Parameters"]["modulus"] = json!("2000*(1-3*t*(1-t))");
+            processes["json_output_process_list"][0]["Parameters"]["gauss_points_output_variables"] =
+                json!(["CAUCHY_STRESS_VECTOR"]);
+            if law.contains("Orthotropic") {
+                let parameters = json!({"model_part_name": "Structure", "update_at_each_step": true,
+                    "cylindrical_generatrix_point": [-3.0, -2.0, 0.0]});
+                processes["axes"] = json!([process("set_cylindrical_local_axes_process", parameters)]);
+            }
+            let saved = json!({"model_part_name": "Structure", "restart_save_frequency": 0.45});
+            deck["output_processes"] = json!({"saved": [process("save_restart_process", saved)]});
+        });
+        let path = scratch.path().join("StructuralMaterials.json");
+        let mut materials = read_json(&path).expect("the materials");
+        materials["properties"][0]["Material"]["constitutive_law"]["name"] = json!(law);
+        materials["properties"][0]["Material"]["Variables"] = variables;
+        std::fs::write(&path, materials.to_string()).expect("the materials");
+        let output = zelus(scratch.path(), &["run", DECK]);
+        assert!(output.status.success(), "{law}: {}", said(&output));
+        let whole = results(scratch.path());
+        let path = scratch.path().join(DECK);
+        let mut deck = read_json(&path).expect("the deck");
+        deck["solver_settings"]["model_import_settings"] =
+            json!({"input_type": "rest", "input_filename": "Structure", "restart_load_file_label": "0.5"});
+        std::fs::write(&path, deck.to_string()).expect("the deck");
+        let output = zelus(scratch.path(), &["run", DECK]);
+        assert!(output.status.success(), "{law}: {}", said(&output));
+        assert!(said(&output).contains("step 6,") && !said(&output).contains("step 5,"), "{law}: {}", said(&output));
+        assert!(results(scratch.path()) == whole, "{law}");
+    }
+}
+
 #[test]
 fn settings_that_save_nothing_are_refused() {
     for (key, value) in [("max_files_to_keep", json!(0)), ("restart_save_frequency", json!(-1.0))] {

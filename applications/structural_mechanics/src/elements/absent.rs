@@ -43,6 +43,9 @@ register_absent! { LawEntry ["SmallStrainIsotropicPlasticityPlaneStress", "Finit
 register_absent! { LawEntry ["SmallStrainIsotropicDamage", "SmallStrainThermalIsotropicDamage"] =>
 "of equivalent stresses VonMises, Rankine and Tresca are there, in space, plane strain and plane stress" }
 
+register_absent! { LawEntry ["GenericAnisotropic", "SmallStrainOrthotropicDamage"] =>
+"orthotropic elasticity is there, LinearElasticOrthotropic3DLaw; orthotropic plasticity and damage are not" }
+
 register_absent! { LawEntry ["SmallStrainDplusDminus", "DamageDPlusDMinus", "SmallStrainHighCycleFatigue", "AssociativePlasticDamage", "SmallStrainPlasticDamage"] =>
 "of damage the isotropic one is there, SmallStrainIsotropicDamage and SmallStrainThermalIsotropicDamage" }
 

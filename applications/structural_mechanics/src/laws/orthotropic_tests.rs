@@ -242,19 +242,18 @@ fn layers_in_three_directions_are_isotropic_together() {
 
 #[test]
 fn constants_without_a_positive_energy_are_refused() {
-    let refused = |name: &str, changed: (&str, f64)| {
-        let mut values = FIBRE.to_vec();
-        values.iter_mut().filter(|(own, _)| *own == changed.0).for_each(|own| own.1 = changed.1);
-        law_of::<6>(&properties(name, &values), false).err().unwrap().to_string()
+    let with = |name: &str, value: f64| {
+        let change = |&(own, usual): &(&'static str, f64)| (own, if own == name { value } else { usual });
+        FIBRE.iter().map(change).collect::<Vec<_>>()
+    };
+    let refused = |law: &str, (name, value): (&str, f64)| {
+        law_of::<6>(&properties(law, &with(name, value)), false).err().unwrap().to_string()
     };
     assert!(refused(SPACE, ("YOUNG_MODULUS_Z", -1.0)).contains("YOUNG_MODULUS_Z of properties 1 is -1"));
     assert!(refused(SPACE, ("SHEAR_MODULUS_YZ", 0.0)).contains("SHEAR_MODULUS_YZ"));
     // √(140/10) = 3.741657
     assert!(refused(SPACE, ("POISSON_RATIO_XY", 3.75)).contains("within ±3.741657"));
-    law::<6>(
-        SPACE,
-        &FIBRE.iter().map(|&(n, v)| (n, if n.ends_with("XY") && n < "Q" { 1.5 } else { v })).collect::<Vec<_>>(),
-    );
+    law::<6>(SPACE, &with("POISSON_RATIO_XY", 1.5));
     // each pair alone has a positive energy, all three have not
     assert!(refused(SPACE, ("POISSON_RATIO_YZ", 1.11)).contains("negative energy together"));
     let problem = law_of::<6>(&properties(SPACE, &FIBRE[1..]), false).err().unwrap().to_string();
@@ -274,4 +273,14 @@ fn axes_of_elements_are_perpendicular_and_complete() {
     assert_eq!(axes, Tensor::new(0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0));
     let quarter = of_element([0.0, 1.0, 0.0], [0.0; 3], true).unwrap().unwrap();
     assert_eq!(quarter, Tensor::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0));
+}
+
+/// Contact estimates its penalty by one modulus of a body.
+#[test]
+fn one_modulus_stands_for_a_material() {
+    let of = |values: &[(&str, f64)]| representative_young(&properties(SPACE, values));
+    assert_eq!(of(&[("YOUNG_MODULUS", 3.0), ("YOUNG_MODULUS_X", 9.0)]), Some(3.0));
+    assert_eq!(of(&[("YOUNG_MODULUS_X", 9.0), ("YOUNG_MODULUS_Y", 1.0)]), Some(5.0));
+    assert_eq!(of(FIBRE), Some(158.0 / 3.0));
+    assert_eq!(of(&[]), None);
 }
