@@ -93,6 +93,8 @@ fn creep_lies_between_hooke_and_a_fluid() {
     let (at_once, hooke) =
         (creep.pk2(&state(strain, [2.0, 2.0], &history), None), elastic.pk2(&state(strain, [0.0; 2], &[]), None));
     assert!((0..6).all(|s| near(at_once[s], hooke[s], 1e-13 * E)));
+    let kept = StrainState { elastic: true, ..state(strain, [0.0, 1e18], &history) };
+    assert_eq!(creep.pk2(&kept, None), at_once, "an elastic state does not creep");
     let at_last = creep.pk2(&state(strain, [0.0, 1e18], &history), None);
     let pressure = E / (1.0 - 2.0 * NU) / 3.0 * 0.011;
     assert!((0..3).all(|s| near(at_last[s], pressure, 1e-5)) && size(&at_last[3..]) < 1e-5, "{at_last:?}");

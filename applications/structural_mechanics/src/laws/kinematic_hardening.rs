@@ -34,6 +34,17 @@ pub struct KinematicReturn {
     pub slope: f64,
 }
 
+impl KinematicReturn {
+    /// A state that does not yield.
+    pub const NONE: Self = Self {
+        delta: 0.0,
+        normal: Tensor::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        recall: 1.0,
+        size: 0.0,
+        slope: 1.0,
+    };
+}
+
 /// Constants that laws with kinematic hardening take, beside those of [`hardening::CONSTANTS`].
 const OWN: [&str; 2] = ["KINEMATIC_PLASTICITY_PARAMETERS", "KINEMATIC_HARDENING_TYPE"];
 
@@ -111,7 +122,7 @@ impl KinematicHardening {
         };
         let (excess, still) = at(0.0);
         if excess <= ON_SURFACE * hardening.at(alpha).0 || excess.is_nan() {
-            return KinematicReturn { normal: Tensor::zeros(), ..still };
+            return KinematicReturn::NONE;
         }
         let (mut low, mut high) = (0.0, root * (s.norm() + before.norm()) / three_mu);
         let (mut excess, mut found) = (excess, still);

@@ -53,10 +53,15 @@ fn remembered(history: &[f64]) -> Remembered {
 }
 
 impl KinematicPlasticity {
-    fn trial(&self, strain: &Tensor, history: &[f64]) -> KinematicTrial {
-        let before = remembered(history);
-        let trial = 2.0 * self.j2.mu * (deviator(strain) - before.plastic);
-        let turn = self.kinematic.turn_back(&self.j2, &trial, &before.back, before.alpha);
+    fn trial<const S: usize>(&self, state: &StrainState<'_, S>) -> KinematicTrial {
+        let before = remembered(state.history);
+        let strain = strain_tensor(&state.strain);
+        let trial = 2.0 * self.j2.mu * (deviator(&strain) - before.plastic);
+        let turn = if state.elastic {
+            KinematicReturn::NONE
+        } else {
+            self.kinematic.turn_back(&self.j2, &trial, &before.back, before.alpha)
+        };
         let s = trial - 6.0_f64.sqrt() * self.j2.mu * turn.delta * turn.normal;
         KinematicTrial { before, dilation: strain.trace(), turn, s }
     }
@@ -74,7 +79,7 @@ impl KinematicPlasticity {
 
 impl<const S: usize> ConstitutiveLaw<S> for KinematicPlasticity {
     fn pk2(&self, state: &StrainState<'_, S>, tangent: Option<&mut Matrix<S>>) -> [f64; S] {
-        let KinematicTrial { before, dilation, turn, s, .. } = self.trial(&strain_tensor(&state.strain), state.history);
+        let KinematicTrial { before, dilation, turn, s, .. } = self.trial(state);
         let (pairs, unit) = (pairs::<S>(), |p, q| if p == q { 1.0 } else { 0.0 });
         if let Some(tangent) = tangent {
             let two_mu = 2.0 * self.j2.mu;
@@ -102,7 +107,7 @@ impl<const S: usize> ConstitutiveLaw<S> for KinematicPlasticity {
 
     /// The elastic part: ½ K tr²(ε) + ‖dev σ‖²/4μ.
     fn energy(&self, state: &StrainState<'_, S>) -> f64 {
-        let KinematicTrial { dilation, s, .. } = self.trial(&strain_tensor(&state.strain), state.history);
+        let KinematicTrial { dilation, s, .. } = self.trial(state);
         0.5 * self.j2.bulk * dilation * dilation + s.norm_squared() / (4.0 * self.j2.mu)
     }
 
@@ -119,7 +124,7 @@ impl<const S: usize> ConstitutiveLaw<S> for KinematicPlasticity {
     }
 
     fn advance(&self, state: &StrainState<'_, S>, history: &mut [f64]) {
-        let KinematicTrial { before, turn, .. } = self.trial(&strain_tensor(&state.strain), state.history);
+        let KinematicTrial { before, turn, .. } = self.trial(state);
         let plastic = before.plastic + 1.5_f64.sqrt() * turn.delta * turn.normal;
         history[..6].copy_from_slice(&stress_vector::<6>(&plastic));
         history[6..12].copy_from_slice(&stress_vector::<6>(&self.kinematic.moved(&before.back, &turn)));
@@ -129,10 +134,10 @@ impl<const S: usize> ConstitutiveLaw<S> for KinematicPlasticity {
     fn internal(&self, state: &StrainState<'_, S>, variable: &str, out: &mut Vec<f64>) -> bool {
         match variable {
             "UNIAXIAL_STRESS" => {
-                out.push(self.equivalent_stress(&self.trial(&strain_tensor(&state.strain), state.history)));
+                out.push(self.equivalent_stress(&self.trial(state)));
             }
             PLASTIC_WORK => {
-                let trial = self.trial(&strain_tensor(&state.strain), state.history);
+                let trial = self.trial(state);
                 out.push(1.5_f64.sqrt() * trial.turn.delta * trial.s.dot(&trial.turn.normal));
             }
             "BACK_STRESS_VECTOR" => out.extend_from_slice(&stress_vector::<S>(&remembered(state.history).back)),

@@ -206,3 +206,23 @@ fn parameters_are_checked() {
     let problem = law_of::<6>(&without, false).err().unwrap().to_string();
     assert!(problem.contains("have no KINEMATIC_PLASTICITY_PARAMETERS"), "{problem}");
 }
+
+/// In an elastic state the law answers as one that never yields, from the same history, and keeps that history.
+#[test]
+fn an_elastic_state_keeps_the_history() {
+    let own = law::<6>(SPACE, 1.0, &[C, RATE], 5.0);
+    let mut random = Random(7);
+    let history = advanced(own.as_ref(), std::array::from_fn(|_| 0.05 * random.next()), &[0.0; 13]);
+    let strain: [f64; 6] = std::array::from_fn(|_| 0.05 * random.next());
+    let elastic = StrainState { elastic: true, ..state(strain, &history) };
+    let mut strong = properties(SPACE, 1.0, &[C, RATE], 5.0);
+    strong.values.insert("YIELD_STRESS".to_owned(), PropertyValue::Number(1e6 * YIELD));
+    let strong = law_of::<6>(&strong, false).unwrap();
+    let [mut tangent, mut expected] = [[[0.0; 6]; 6]; 2];
+    let found = own.pk2(&elastic, Some(&mut tangent));
+    assert_eq!((found, tangent), (strong.pk2(&state(strain, &history), Some(&mut expected)), expected));
+    assert_ne!(found, own.pk2(&state(strain, &history), None), "it would yield");
+    let mut next = history.clone();
+    own.advance(&elastic, &mut next);
+    assert!(size(&next.iter().zip(&history).map(|(a, b)| a - b).collect::<Vec<f64>>()) < 1e-14);
+}

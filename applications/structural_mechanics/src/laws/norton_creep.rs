@@ -109,6 +109,9 @@ impl NortonCreep {
 
     /// a: the creep of the step at the unit stress.
     fn creep<const S: usize>(&self, state: &StrainState<'_, S>) -> f64 {
+        if state.elastic {
+            return 0.0;
+        }
         let [begin, end] = state.step;
         let begin = if state.history[7] > 0.0 { state.history[8] } else { begin };
         let grown = if self.time_exponent == 0.0 {
@@ -182,7 +185,9 @@ impl<const S: usize> ConstitutiveLaw<S> for NortonCreep {
             strain += (1.5_f64.sqrt() * trial.growth / size) * trial.s;
         }
         remember(&strain, equivalent + trial.growth, history);
-        history[7..].copy_from_slice(&[1.0, state.step[1]]);
+        if !state.elastic {
+            history[7..].copy_from_slice(&[1.0, state.step[1]]);
+        }
     }
 
     fn internal(&self, state: &StrainState<'_, S>, variable: &str, out: &mut Vec<f64>) -> bool {
