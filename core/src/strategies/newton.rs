@@ -93,7 +93,7 @@ pub struct NewtonRaphson {
     stabilizes: bool,
     /// Whether steps begin with elastic elements, since one has failed without that.
     begins_elastic: bool,
-    /// Whether the last step might have begun so.
+    /// Whether the last step that failed might have begun so.
     may_begin_elastic: bool,
     /// Why the tangent of the step was singular, in this attempt or one before.
     singular_cause: Option<String>,
@@ -212,6 +212,9 @@ impl SolutionStrategy for NewtonRaphson {
         let record = recorded(part, system, |part, system| self.iterate(part, system, monitor));
         self.end_elastic(part);
         self.failed = !record.as_ref().is_ok_and(|record| record.converged);
+        if record.as_ref().is_ok_and(|record| !record.converged) {
+            self.may_begin_elastic = self.may_begin_elastic(part, system);
+        }
         let (coarse, balance) = (self.coarse.take(), self.balance.take());
         Ok(StepRecord { singular: self.singular, unrestrained: self.unrestrained, coarse, balance, ..record? })
     }

@@ -1,4 +1,4 @@
-//! Code that load conditions share: the kernel of distributed loads, values from the condition and its nodes, rows, thickness.
+//! Code that load conditions share: the kernels of distributed loads and of loads at a node, values from the condition and its nodes, rows, thickness.
 
 use std::marker::PhantomData;
 
@@ -82,6 +82,62 @@ where
         } else {
             L::add(self.rule, entity, view, lhs, rhs);
         }
+        Ok(())
+    }
+}
+
+/// A load at a node: the vector that states it, and the unknowns along which it works.
+pub trait LoadAtNode: 'static {
+    /// Vector that states it.
+    const LOAD: &'static Variable<[f64; 3]>;
+    /// Unknowns along which it works.
+    const ALONG: &'static Variable<[f64; 3]>;
+
+    /// First of its components with this number of them.
+    fn first(_components: usize) -> usize {
+        0
+    }
+
+    /// Its size for a vector of size 1.
+    fn factor(_entity: &EntityView<'_, 1>) -> f64 {
+        1.0
+    }
+}
+
+/// The kernel of a load at a node, which does not change with the motion.
+pub struct Nodal<L>(PhantomData<fn() -> L>);
+
+impl<L: LoadAtNode, const SIZE: usize> Kernel<1, SIZE> for Nodal<L> {
+    type State = ();
+
+    fn unknowns() -> [LocalUnknown; SIZE] {
+        std::array::from_fn(|row| LocalUnknown::of_node(0, L::ALONG.component((L::first(SIZE) + row) as u8)))
+    }
+
+    fn new(_request: &BlockRequest<'_>) -> Result<Self> {
+        Ok(Self(PhantomData))
+    }
+
+    fn state(&self, _entity: &EntityView<'_, 1>, _view: &StepView<'_>) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn tangent(&self) -> Tangent {
+        Tangent::Zero
+    }
+
+    fn local_system(
+        &self,
+        entity: &EntityView<'_, 1>,
+        _state: &(),
+        view: &StepView<'_>,
+        _request: Request,
+        _lhs: &mut [f64],
+        rhs: &mut [f64; SIZE],
+    ) -> Result<(), String> {
+        let [load] = vector_load(entity, view, L::LOAD);
+        let factor = L::factor(entity);
+        rhs.iter_mut().zip(&load[L::first(SIZE)..]).for_each(|(r, f)| *r += factor * f);
         Ok(())
     }
 }

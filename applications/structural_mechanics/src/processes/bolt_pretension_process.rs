@@ -15,6 +15,7 @@ use zelus_core::register;
 use zelus_core::vector3::{norm, scale};
 
 use super::bolt_section::{BoltSection, Cut};
+use super::constraints_of_process::couple;
 use super::nodal_conditions::add_conditions_to_mesh;
 use crate::variables::{DISPLACEMENT, RESULTANT_LOAD, TEMPERATURE};
 
@@ -121,11 +122,9 @@ fn prepare(request: &mut ProcessRequest<'_>) -> Result<()> {
     let first = section.open(part);
     let reference = part.add_node(section.centre);
     let made = add_conditions_to_mesh(part, "ResultantLoadCondition", &[reference])?;
-    let origin = format!("{} on {}", target.process, target.path);
     let is_warm = part.nodes.history.has(TEMPERATURE.name());
     let constraints = constraints(&section, first, reference, part.info.domain_size, is_warm);
-    let constraints = part
-        .add_constraints(constraints.into_iter().map(|own| MasterSlaveConstraint { origin: origin.clone(), ..own }));
+    let constraints = couple(part, &target, constraints);
     let copies = first..first + section.nodes.len() as u32;
     let mut own = SubPart {
         nodes: section.nodes.iter().copied().chain(copies).chain([reference]).collect(),

@@ -13,6 +13,7 @@ use zelus_core::model::{MasterSlaveConstraint, Model, ModelPart, NodeUnknown, Sc
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, Target, check_unknowns};
 use zelus_core::register;
 
+use super::constraints_of_process::{couple, uncouple};
 use super::kinematic_coupling_process::coupled_part;
 use super::reference_node::{ReferenceNode, components, prepare, required};
 use super::resultant::Resultant;
@@ -119,7 +120,6 @@ impl Process for DistributingCoupling {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root_mut(&self.target.path)?;
         let space = part.info.domain_size;
-        let origin = format!("{} on {}", self.target.process, self.target.path);
         let unknowns = |node| (0..space).map(move |c| (node, DISPLACEMENT.component(c as u8)));
         let of_nodes: Vec<NodeUnknown> = self.resultant.nodes().flat_map(unknowns).collect();
         let weights =
@@ -127,8 +127,7 @@ impl Process for DistributingCoupling {
         let rows: Vec<(NodeUnknown, Vec<f64>)> =
             self.rows.iter().map(|row| ((self.reference.node, row.0), weights(row))).collect();
         let new = if self.leads { nodes_follow(&rows, &of_nodes) } else { reference_follows(&rows, &of_nodes) };
-        let new = new.into_iter().map(|own| MasterSlaveConstraint { origin: origin.clone(), ..own });
-        self.made = part.add_constraints(new);
+        self.made = couple(part, &self.target, new);
         Ok(())
     }
 
@@ -165,9 +164,7 @@ impl Process for DistributingCoupling {
     }
 
     fn finalize(&mut self, model: &mut Model) -> Result<()> {
-        // Later stages have couplings of their own.
-        let part = model.root_mut(&self.target.path)?;
-        part.constraints[self.made.clone()].iter_mut().for_each(|constraint| constraint.active = false);
+        uncouple(model.root_mut(&self.target.path)?, &self.made);
         Ok(())
     }
 

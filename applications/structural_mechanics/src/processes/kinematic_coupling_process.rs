@@ -3,12 +3,13 @@
 use zelus_core::assembly::System;
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
 use zelus_core::entities::Interaction;
-use zelus_core::model::{MasterSlaveConstraint, Model, ModelPart};
+use zelus_core::model::{Model, ModelPart};
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest, Target, check_unknowns};
 use zelus_core::register;
 use zelus_core::vector3::sub;
 
+use super::constraints_of_process::{couple, uncouple};
 use super::kinematic_coupling::{KinematicCoupling, LargeRotation};
 use super::reference_node::{ReferenceNode, prepare, required};
 
@@ -62,10 +63,8 @@ fn is_of_small_displacements(part: &ModelPart, nodes: &[u32]) -> bool {
 impl Process for KinematicCouplingProcess {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root_mut(&self.target.path)?;
-        let origin = format!("{} on {}", self.target.process, self.target.path);
         let new = self.coupling.constraints(part.info.domain_size, [0.0; 3]);
-        let new = new.into_iter().map(|own| MasterSlaveConstraint { origin: origin.clone(), ..own });
-        self.coupling.made = part.add_constraints(new);
+        self.coupling.made = couple(part, &self.target, new);
         Ok(())
     }
 
@@ -100,9 +99,7 @@ impl Process for KinematicCouplingProcess {
     }
 
     fn finalize(&mut self, model: &mut Model) -> Result<()> {
-        // Later stages have couplings of their own.
-        let part = model.root_mut(&self.target.path)?;
-        part.constraints[self.coupling.made.clone()].iter_mut().for_each(|constraint| constraint.active = false);
+        uncouple(model.root_mut(&self.target.path)?, &self.coupling.made);
         Ok(())
     }
 

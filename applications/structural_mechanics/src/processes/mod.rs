@@ -3,6 +3,7 @@
 mod outward_faces;
 mod resultant;
 mod nodal_conditions;
+mod constraints_of_process;
 mod bolt_section;
 mod bolt_pretension_process;
 mod rotation_vector;

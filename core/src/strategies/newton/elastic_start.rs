@@ -10,16 +10,20 @@ use crate::entities::ELASTIC;
 use crate::model::ModelPart;
 
 impl NewtonRaphson {
-    /// A step begins: marks its iterations where elements are elastic at first. Collective.
-    pub(super) fn begin_elastic(&mut self, part: &mut ModelPart, system: &System) {
-        self.may_begin_elastic = self.settings.elastic_start_after_failure
-            && self.scheme.is_static()
-            && !self.settings.linear
-            && !system.interactions.is_empty()
-            && part.ranks.any(has_history(system));
+    /// A step begins: marks its iterations where elements are elastic at first.
+    pub(super) fn begin_elastic(&self, part: &mut ModelPart) {
         if self.begins_elastic {
             part.info.set(ELASTIC, true);
         }
+    }
+
+    /// Whether a step that has failed might begin with elastic elements. Collective.
+    pub(super) fn may_begin_elastic(&self, part: &ModelPart, system: &System) -> bool {
+        self.settings.elastic_start_after_failure
+            && self.scheme.is_static()
+            && !self.settings.linear
+            && !system.interactions.is_empty()
+            && part.ranks.any(has_history(system))
     }
 
     /// Lets elements yield from now on; whether they were elastic.

@@ -93,7 +93,7 @@ impl NewtonRaphson {
         monitor: &mut dyn Monitor,
     ) -> Result<(Vec<IterationRecord>, Option<String>)> {
         monitor.phase("search");
-        self.begin_elastic(part, system);
+        self.begin_elastic(part);
         let mut step = self.begin_step(part, system)?;
         if let Some(what) = self.first_infinite(part, system, &step.residual) {
             return Ok((Vec::new(), Some(format!("the step cannot begin: {what}"))));
