@@ -12,6 +12,7 @@ mod elastic;
 mod grid;
 mod large_strain;
 mod orthotropic;
+mod periodic;
 mod plastic;
 mod resultants;
 mod springs;

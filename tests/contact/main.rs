@@ -11,6 +11,7 @@ mod calculated_parameters;
 mod condensation;
 mod corners;
 mod elastic_start;
+mod flange;
 mod free_bodies;
 mod interface_surfaces;
 mod lift_off;

@@ -7,7 +7,7 @@ use zelus::contact_structural_mechanics::interface::{
     Bodies, Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles,
 };
 use zelus::contact_structural_mechanics::law::{
-    Augmentation, COULOMB, Margin, Nitsche, NitscheVariant, NormalVariation, SlipRule, StepParameters,
+    Augmentation, COULOMB, Margin, Multiplier, Nitsche, NitscheVariant, NormalVariation, SlipRule, StepParameters,
 };
 use zelus::contact_structural_mechanics::mortar::{IntegrationOrder, OperatorThreshold, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
@@ -123,7 +123,7 @@ impl Contact {
         let of_slaves = Patches::new(&part, interfaces, None);
         let patches = Arc::new(NormalPatches::of_slaves(&of_slaves, interfaces, NodalNormals::ByEdges));
         let slaves = of_slaves.of_facet(0, 0, face.len()).to_vec();
-        let table = SlaveTable::of_patches(&mut part, &of_slaves, "pair");
+        let table = SlaveTable::of_patches(&mut part, &of_slaves, "pair", Multiplier::None);
         let axisymmetric = element.starts_with("Axisym").then_some(0.5);
         let bodies = Arc::new(Bodies::new(&part, interfaces, axisymmetric).expect("tractions"));
 

@@ -440,3 +440,23 @@ fn heat_at_rest_knows_no_time() {
     }
     assert!((middle(1.0, true) - 0.4).abs() > 1e-3);
 }
+
+/// ANALYTIC: between a column at 0 and one at 1 temperatures are linear; the right end has that of the left by its period.
+#[test]
+fn temperatures_of_periodic_sides_are_equal() {
+    let slab = Slab::new(8);
+    let deck = Deck::new("stationary", 1e12, 1e12, 2.0)
+        .assign("Left", "TEMPERATURE", json!(0.0), true)
+        .assign("Middle", "TEMPERATURE", json!(1.0), true)
+        .process(
+            "apply_periodic_condition_process",
+            json!({"model_part_name": "Heat", "first_model_part_name": "Left", "second_model_part_name": "Right",
+                "variable_names": ["TEMPERATURE"],
+                "transformation_settings": {"translation_settings": {"dir_of_translation": [1.0, 0.0, 0.0], "magnitude": 1.0}}}),
+        );
+    let found = deck.run(&slab).nodal("TEMPERATURE", 0);
+    for (column, expected) in [(2, 0.5), (4, 1.0), (5, 1.0), (6, 2.0 / 3.0), (8, 0.0)] {
+        let value = found[&(slab.node(column, 1) as u64)];
+        assert!((value - expected).abs() < 1e-12, "column {column}: {value}");
+    }
+}

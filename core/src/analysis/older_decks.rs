@@ -26,6 +26,9 @@ const GID: &str = "output_configuration";
 /// Name of the part that was made of all that is computed.
 const COMPUTED: &str = "computing_domain";
 
+/// Keys that name a part below the one of `"model_part_name"`.
+const BELOW_ROOT: [&str; 2] = ["first_model_part_name", "second_model_part_name"];
+
 /// The same deck with its lists of processes in `processes`, and no `mesh_id` of 0, a number without meaning.
 pub(super) fn modernise(deck: &Node, report: &mut Report) -> Node {
     let mut deck = deck.clone();
@@ -81,7 +84,8 @@ pub(super) fn complete_part_names(deck: &mut Node, root: &str, model: &Model, re
             return;
         }
         let Value::Object(parameters) = &mut parameters.value else { return };
-        let names_full_path = |key: &&str| key.ends_with("model_part_name") && !key.starts_with("sub_");
+        let names_full_path =
+            |key: &&str| key.ends_with("model_part_name") && !key.starts_with("sub_") && !BELOW_ROOT.contains(key);
         let keys: Vec<String> = parameters.keys().filter(names_full_path).map(str::to_owned).collect();
         for key in keys {
             let Some(node) = parameters.get_mut(&key) else { continue };

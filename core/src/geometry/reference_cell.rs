@@ -58,6 +58,18 @@ impl ReferenceCell {
         }
     }
 
+    /// The point of a cell of a line or surface near a point outside it: negative coordinates become 0, those beyond 1 are shortened.
+    pub fn clamped(&self, xi: [f64; 3]) -> [f64; 3] {
+        match self.shape {
+            Shape::Tri3 | Shape::Tri6 => {
+                let [a, b] = [xi[0].max(0.0), xi[1].max(0.0)];
+                let sum = (a + b).max(1.0);
+                [a / sum, b / sum, 0.0]
+            }
+            _ => std::array::from_fn(|k| if k < self.dim { xi[k].clamp(-1.0, 1.0) } else { 0.0 }),
+        }
+    }
+
     /// Length, area or volume of the cell in local coordinates; 1 for a point.
     pub const fn size(&self) -> f64 {
         match self.shape {

@@ -25,7 +25,11 @@ mod assign_scalar_variable_to_entities_process;
 mod assign_vector_variable_to_entities_process;
 mod assign_vector_by_direction_to_entity_process;
 mod assign_flag_process;
+mod point_grid;
 mod assign_master_slave_constraints_to_neighbours_process;
+mod congruence;
+mod congruent_points;
+mod apply_periodic_condition_process;
 mod check_nodes_process;
 mod comparison;
 #[cfg(test)]

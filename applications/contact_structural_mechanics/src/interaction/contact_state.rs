@@ -88,9 +88,9 @@ impl ContactState {
     pub(super) fn make_states(&mut self, part: &mut ModelPart) {
         let angle = self.setup.settings.solver.feature_angle;
         let name = self.owners_name();
-        let table = self.pairing.make_patches(part, angle, &name);
-        write_nodal_normals(part, &self.pairing, &self.supported_nodes);
         let formulation = self.setup.settings.formulation;
+        let table = self.pairing.make_patches(part, angle, &name, formulation.multiplier);
+        write_nodal_normals(part, &self.pairing, &self.supported_nodes);
         if let Some((name, components)) = formulation.multiplier.column() {
             part.slave_nodes.history.add_named(name, components);
         }

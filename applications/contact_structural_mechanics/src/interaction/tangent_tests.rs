@@ -13,7 +13,7 @@ use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 use crate::active_set::{Rules, find_tangents};
 use crate::flags::SLIP;
 use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex};
-use crate::law::{Augmentation, COULOMB, Margin, Nitsche, NormalVariation, SlipRule, StepParameters};
+use crate::law::{Augmentation, COULOMB, Margin, Multiplier, Nitsche, NormalVariation, SlipRule, StepParameters};
 use crate::mortar::tests::Noise;
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::{
@@ -121,7 +121,7 @@ impl Contact {
         let interfaces = std::slice::from_ref(&interface);
         let patches = Patches::new(&part, interfaces, None);
         let normals = Arc::new(NormalPatches::of_slaves(&patches, interfaces, NodalNormals::ByEdges));
-        let table = SlaveTable::of_patches(&mut part, &patches, "contact");
+        let table = SlaveTable::of_patches(&mut part, &patches, "contact", Multiplier::None);
         if let Some((name, components)) = formulation.multiplier.column() {
             part.slave_nodes.history.add_named(name, components);
         }

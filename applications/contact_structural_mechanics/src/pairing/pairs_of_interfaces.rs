@@ -17,7 +17,7 @@ use crate::interface::{
     Bodies, Facet, FixedDirections, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex, set_sides,
     sides,
 };
-use crate::law::{NormalVariation, StepParameters};
+use crate::law::{Multiplier, NormalVariation, StepParameters};
 use crate::mortar::{Choices, MOST_NODES, SegmentationSettings};
 use crate::pairs::{
     ContactBlock, Integral, IntegrationState, PAIRS, Pair, PairKey, PairRequest, check_pairs, condition_name,
@@ -96,10 +96,16 @@ impl Pairing {
     /// Makes the patches, and their slave nodes owners of unknowns in a model part; names of their sets begin with `name`.
     ///
     /// `angle` is the feature angle at which patches end; see [`Patches::new`].
-    pub(crate) fn make_patches(&mut self, part: &mut ModelPart, angle: Option<f64>, name: &str) -> SlaveTable {
+    pub(crate) fn make_patches(
+        &mut self,
+        part: &mut ModelPart,
+        angle: Option<f64>,
+        name: &str,
+        multiplier: Multiplier,
+    ) -> SlaveTable {
         self.patches = Patches::new(part, &self.interfaces, angle);
         self.normals = Arc::new(NormalPatches::of_slaves(&self.patches, &self.interfaces, self.normals.weights()));
-        let table = SlaveTable::of_patches(part, &self.patches, name);
+        let table = SlaveTable::of_patches(part, &self.patches, name, multiplier);
         self.owners.clone_from(&table.owners);
         table
     }

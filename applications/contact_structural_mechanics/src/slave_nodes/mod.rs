@@ -1,5 +1,6 @@
 //! Slave nodes of an interaction: their states, their owners of unknowns, and their columns at mesh nodes.
 
+mod following_multipliers;
 pub(crate) mod multiplier_columns;
 mod owners;
 mod slave_state;

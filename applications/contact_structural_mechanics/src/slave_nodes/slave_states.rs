@@ -17,9 +17,10 @@ use zelus_core::model::{ModelPart, Nodes, Variable};
 use zelus_core::vector3::{cross, norm};
 use zelus_structural_mechanics::variables::NORMAL;
 
+use super::following_multipliers;
 use super::slave_state::{Accepted, SlaveKinematics, SlaveLawState, SlaveParameters, SlaveState};
 use crate::interface::{NormalPatches, Patches, SlaveIndex};
-use crate::law::{FrictionLaw, NodeState};
+use crate::law::{FrictionLaw, Multiplier, NodeState};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY,
     KEPT_CONTACT_PRESSURE, MULTIPLIER_WEIGHT, NODAL_AREA, NORMAL_GAP, TANGENT_ETA, TANGENT_XI, WEIGHTED_GAP,
@@ -49,11 +50,12 @@ pub struct SlaveTable {
 
 impl SlaveTable {
     /// The slave nodes of patches, whose names begin with `name`, as owners of unknowns in a model part.
-    pub fn of_patches(part: &mut ModelPart, patches: &Patches, name: &str) -> Self {
+    pub fn of_patches(part: &mut ModelPart, patches: &Patches, name: &str, multiplier: Multiplier) -> Self {
         let names: Vec<String> = (0..patches.count()).map(|patch| set_name(name, patch as u32)).collect();
         for (patch, name) in names.iter().enumerate() {
             part.slave_nodes.set(name, &patches.nodes_of(patch as u32));
         }
+        following_multipliers::constrain(part, patches, name, multiplier);
         let owner = |slave: SlaveIndex| {
             let name = &names[patches.patch(slave) as usize];
             part.slave_nodes.find(name, patches.mesh_node(slave)).expect("a set that was just made")

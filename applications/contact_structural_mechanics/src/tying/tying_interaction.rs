@@ -375,7 +375,8 @@ impl Interaction for TyingInteraction {
         debug_assert!(self.interfaces.iter().all(|i| i.facets.iter().all(|f| f.role != Roles::Open)));
         nodal_normals(part, &self.interfaces);
         self.patches = Patches::new(part, &self.interfaces, self.settings.feature_angle);
-        self.table = SlaveTable::of_patches(part, &self.patches, &self.owners_name());
+        self.table =
+            SlaveTable::of_patches(part, &self.patches, &self.owners_name(), self.settings.formulation.multiplier);
         if let Some((name, components)) = self.settings.formulation.multiplier.column() {
             part.slave_nodes.history.add_named(name, components);
         }
