@@ -62,6 +62,30 @@ fn a_load_on_nodes_that_no_condition_takes_is_named() {
 }
 
 #[test]
+fn a_load_that_nothing_resists_is_refused() {
+    let scratch = scratch_copy(&root().join("tests/cases/structural/bar_thickness"));
+    let path = scratch.path().join("mesh.mdpa");
+    let mesh = std::fs::read_to_string(&path).expect("the mesh");
+    let check = |node: usize, condition: &str| {
+        let (head, parts) = mesh.split_once("Begin SubModelPart").expect("parts");
+        let head = head.replacen("End Nodes", "99 50.0 60.0 0.0\nEnd Nodes", 1);
+        let load = format!("Begin Conditions {condition}2D1N\n900 0 {node}\nEnd Conditions\n\n");
+        std::fs::write(&path, format!("{head}{load}Begin SubModelPart{parts}")).expect("a file");
+        let output = zelus(scratch.path(), &["check", DECK]);
+        (output.status.code(), said(&output))
+    };
+    for (node, condition, unknown) in
+        [(7, "PointMomentCondition", "ROTATION_Z of node 7"), (99, "PointLoadCondition", "DISPLACEMENT_X of node 99")]
+    {
+        let (code, said) = check(node, condition);
+        let words = ["error[unresisted-load]", unknown, "reference node of a coupling"];
+        assert!(code == Some(2) && words.iter().all(|word| said.contains(word)), "{code:?} {said}");
+    }
+    let (code, said) = check(7, "PointLoadCondition");
+    assert!(code == Some(0) && !said.contains("unresisted"), "{code:?} {said}");
+}
+
+#[test]
 fn a_support_that_constrains_nothing_is_named() {
     let scratch = scratch_copy(&root().join("tests/cases").join(PRESSED));
     let path = scratch.path().join(DECK);

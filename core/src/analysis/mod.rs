@@ -33,6 +33,7 @@ mod threads;
 mod time_stepping;
 #[cfg(test)]
 mod two_walls_tests;
+mod unresisted_loads;
 mod unused_settings;
 
 pub use cutting::Cutting;

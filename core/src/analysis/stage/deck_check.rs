@@ -10,6 +10,7 @@ use super::super::model_checks::{
 use super::super::no_load::warn_of_no_load;
 use super::super::rigid_body_modes::report_restraints;
 use super::super::solver::TimeScheme;
+use super::super::unresisted_loads::report_unresisted_loads;
 use super::built_stage::BuiltStage;
 use super::problems_of_ranks::problems_of_all;
 use crate::diagnostics::{Diagnostic, Result};
@@ -50,6 +51,7 @@ pub(super) fn check(built: &BuiltStage, model: &Model) -> Result<(Vec<Diagnostic
     warn_of_loose_loads(part, &mut problems);
     warn_of_loads_given_twice(part, processes, &mut problems);
     warn_of_supported_loads(part, &system.dofs, processes, [middle, schedule.end_time], &mut problems);
+    report_unresisted_loads(part, system, &prescriptions(part, processes, middle), &mut problems);
     warn_of_body_loads(part, system, processes, &mut problems);
     warn_of_contradictions(part, processes, [middle, schedule.end_time], &mut problems);
     let times = schedule.first_step_end().into_iter().chain([middle, schedule.end_time]);
