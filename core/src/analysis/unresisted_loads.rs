@@ -29,8 +29,8 @@ pub(super) fn report_unresisted_loads(
     if part.share.is_some() {
         return;
     }
-    let is_nodal = |block: &&Box<dyn EntityBlock>| (0..block.len()).all(|at| block.nodes(at).len() == 1);
-    let (nodal, others): (Vec<_>, Vec<_>) = system.conditions.iter().partition(is_nodal);
+    let is_nodal = |block: &dyn EntityBlock| (0..block.len()).all(|at| block.nodes(at).len() == 1);
+    let (nodal, others): (Vec<_>, Vec<_>) = system.conditions.iter().partition(|block| is_nodal(block.as_ref()));
     let mut loaded = BTreeSet::new();
     nodal.iter().for_each(|block| add_unknowns(block.as_ref(), &|_| true, &mut loaded));
     if loaded.is_empty() {
