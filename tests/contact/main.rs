@@ -8,6 +8,7 @@ mod blocks;
 mod blocks_of_case;
 mod body_balance;
 mod calculated_parameters;
+mod clearance;
 mod condensation;
 mod corners;
 mod elastic_start;

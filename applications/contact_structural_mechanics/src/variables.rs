@@ -20,6 +20,7 @@ register_variable! {
     pub FRICTION_TRACTION: [f64; 3] = "History traction of the penalty method: tangential traction on a slave node (force per area).";
     pub CARRIED_TRACTION: [f64; 3] = "History traction of Nitsche's method: tangential traction of contact less that of the slave's body (force per area).";
     pub NORMAL_GAP: f64 = "Gap along the normal of a slave node, negative in penetration (length).";
+    pub INITIAL_CLEARANCE: f64 = "Clearance that the deck gives a slave node before the run, negative for interference (length).";
     pub NODAL_AREA: f64 = "Area (length in the plane) of contact that belongs to a slave node.";
     pub NODAL_H: f64 = "Distance to the nearest node that shares an element (length).";
     pub INITIAL_PENALTY: f64 = "Penalty parameter of contact (force per length cubed).";

@@ -5,6 +5,7 @@ mod alm_variables_calculation_process;
 mod explicit_penalty_contact_process;
 mod facing_surfaces;
 mod friction_settings;
+mod initial_clearance_process;
 mod interaction_process;
 mod interface_settings;
 mod mesh_tying_process;

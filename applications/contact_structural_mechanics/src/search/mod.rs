@@ -23,5 +23,5 @@ pub use motion::{farthest_motion, have_crossed, step_start};
 pub use open_sides::{OpenSides, Renewal};
 pub use prediction::predicted_positions;
 pub use self_contact::assign_roles;
-pub use start::{facing, settle};
+pub use start::{facing, set_clearance, settle};
 pub use tree::{Bounds, Tree};

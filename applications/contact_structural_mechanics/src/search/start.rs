@@ -10,7 +10,7 @@ use super::direct_check::met_along;
 use super::inside::inside;
 use super::tree::{Bounds, Tree};
 use crate::interface::{Facet, Interface, Roles, find_nodal_h};
-use crate::variables::NODAL_H;
+use crate::variables::{INITIAL_CLEARANCE, NODAL_H};
 
 /// Cosine beyond which a node and a facet face each other.
 const FACING: f64 = 0.1;
@@ -30,7 +30,16 @@ struct StartingNode {
     normal: [f64; 3],
     /// Way along the normal to the master (length), negative inside it.
     distance: f64,
+    /// Clearance that the deck gives it.
+    clearance: f64,
     size: f64,
+}
+
+impl StartingNode {
+    /// Distance beyond its clearance.
+    fn excess(&self) -> f64 {
+        self.distance - self.clearance
+    }
 }
 
 /// An interface before the first step.
@@ -74,7 +83,7 @@ pub fn settle(
 /// The warning of slave nodes that lie inside the other body, an error where `refuses` holds and one lies deeper than a mesh size.
 /// Collective.
 fn penetration(part: &ModelPart, places: &[StartingNode], name: &str, refuses: bool) -> Option<Diagnostic> {
-    let deep: Vec<&StartingNode> = places.iter().filter(|at| at.distance < -SILENT * at.size).collect();
+    let deep: Vec<&StartingNode> = places.iter().filter(|at| at.excess() < -SILENT * at.size).collect();
     let points: Vec<_> = deep.iter().map(|at| (at.node, part.nodes.current[at.node as usize], at.size)).collect();
     let mut inside = inside(part, &points);
     part.ranks.any_of(&mut inside);
@@ -135,14 +144,47 @@ fn one_body(
     Some(make("one-body", fact).remedy(remedy))
 }
 
-fn adjust(part: &mut ModelPart, places: &[StartingNode], name: &str, tolerance: f64) -> Option<Diagnostic> {
-    let moves = |at: &&StartingNode| (ROUND_OFF * at.size..=tolerance * at.size).contains(&at.distance.abs());
-    let moved: Vec<&StartingNode> = places.iter().filter(moves).collect();
-    for at in &moved {
+/// Moves nodes along their normals to their clearance, without strain.
+fn move_all(part: &mut ModelPart, moved: &[&StartingNode]) {
+    for at in moved {
         let node = at.node as usize;
-        let to = add(part.nodes.initial[node], scale(at.normal, at.distance));
+        let to = add(part.nodes.initial[node], scale(at.normal, at.excess()));
         (part.nodes.initial[node], part.nodes.current[node]) = (to, to);
     }
+}
+
+/// Gives the slave nodes within so many mesh sizes of the master a clearance, negative for an interference, and moves them there without
+/// strain; the note that says so, `None` where there are no such nodes. Collective.
+pub fn set_clearance(
+    part: &mut ModelPart,
+    interface: &Interface,
+    clearance: f64,
+    tolerance: f64,
+) -> Option<Diagnostic> {
+    find_nodal_h(part);
+    part.nodes.values.add(&INITIAL_CLEARANCE);
+    let mut places = places(part, interface);
+    places.retain(|at| at.distance.abs() <= tolerance * at.size);
+    for at in &mut places {
+        at.clearance = clearance;
+        part.nodes.values.values_mut(&INITIAL_CLEARANCE, 0)[at.node as usize] = clearance;
+    }
+    let moved: Vec<&StartingNode> = places.iter().collect();
+    move_all(part, &moved);
+    let farthest = moved.iter().max_by(|a, b| a.excess().abs().total_cmp(&b.excess().abs()))?;
+    let fact = format!(
+        "{} to the clearance {clearance:e} without strain, node {} farthest, by {:.3e}",
+        counted(moved.len(), "slave node is moved", "slave nodes are moved"),
+        part.nodes.ids[farthest.node as usize],
+        farthest.excess().abs()
+    );
+    Some(Diagnostic::note("initial-clearance", fact))
+}
+
+fn adjust(part: &mut ModelPart, places: &[StartingNode], name: &str, tolerance: f64) -> Option<Diagnostic> {
+    let moves = |at: &&StartingNode| (ROUND_OFF * at.size..=tolerance * at.size).contains(&at.excess().abs());
+    let moved: Vec<&StartingNode> = places.iter().filter(moves).collect();
+    move_all(part, &moved);
     let farthest = moved.iter().max_by(|a, b| a.distance.abs().total_cmp(&b.distance.abs()))?;
     let [inside, gaps] = [true, false].map(|is| moved.iter().filter(|at| (at.distance < 0.0) == is).count());
     let fact = format!(
@@ -170,6 +212,7 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<StartingNode> {
     let tree = Tree::new(bounds);
     let nodes = interface.normals_of(part, Roles::Slave);
     let sizes = part.nodes.values.values(&NODAL_H, 0);
+    let clearances = part.nodes.values.get(INITIAL_CLEARANCE.name()).map(|field| &field.levels[0]);
     let place = |at: usize| {
         let (node, normal) = nodes[at];
         let (x, size) = (part.nodes.current[node as usize], sizes[node as usize]);
@@ -181,7 +224,9 @@ fn places(part: &ModelPart, interface: &Interface) -> Vec<StartingNode> {
             met.min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))
         };
         let (distance, master) = way(NEAR * size).or_else(|| way(extent))?;
-        distance.is_finite().then_some(StartingNode { node, master: master.nodes[0], normal, distance, size })
+        let clearance = clearances.map_or(0.0, |of| of[node as usize]);
+        let found = StartingNode { node, master: master.nodes[0], normal, distance, clearance, size };
+        distance.is_finite().then_some(found)
     };
     parallel::map(nodes.len(), AT_A_TIME, place).into_iter().flatten().collect()
 }
