@@ -4,9 +4,12 @@
 //! reorients those that are inside out; [`document`] names elements and conditions. Each format registers itself under the name that
 //! decks give as `"input_type"`; a plugin adds one in the same way, with this crate or without.
 
+pub mod history;
+pub mod conditions;
 pub mod mesh;
 pub mod repair;
 pub mod faces;
+mod constraints;
 pub mod document;
 pub mod proximity;
 mod source;

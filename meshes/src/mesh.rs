@@ -2,6 +2,8 @@
 
 use zelus_core::geometry::Shape;
 
+use super::conditions::{Bolt, Coupling, Equation, Load, MaterialAxes, Support, Temperature};
+
 /// Nodes, cells, named groups of both, and further contents of an input file of a solver.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {
@@ -23,6 +25,20 @@ pub struct Mesh {
     pub supports: Vec<Support>,
     /// Forces on nodes and pressures on faces.
     pub loads: Vec<Load>,
+    /// Linear relations between displacements.
+    pub equations: Vec<Equation>,
+    /// Nodes coupled to reference nodes.
+    pub couplings: Vec<Coupling>,
+    /// Bolts.
+    pub bolts: Vec<Bolt>,
+    /// Axes of materials.
+    pub material_axes: Vec<MaterialAxes>,
+    /// Temperatures that expand bodies.
+    pub temperatures: Vec<Temperature>,
+    /// Steps of the analysis, one after the other; none where the file has none.
+    pub steps: Vec<Step>,
+    /// Whether displacements are large.
+    pub is_large: bool,
     /// Assumption of a planar mesh (plane stress, plane strain, …), where the file names it.
     pub plane: Option<Plane>,
 }
@@ -102,10 +118,30 @@ pub struct Pair {
     pub master: String,
     /// Coulomb's coefficient.
     pub friction: f64,
+    /// Whether slave nodes are moved onto the master at the start, without strain.
+    pub adjusted: bool,
 }
 
-/// A linear elastic material.
-#[derive(Debug, Clone, PartialEq)]
+impl Pair {
+    /// Surfaces that touch without friction.
+    pub fn of(slave: String, master: String) -> Self {
+        Self { tied: false, slave, master, friction: 0.0, adjusted: false }
+    }
+}
+
+/// A step of the analysis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Step {
+    /// Time at its start.
+    pub start: f64,
+    /// Time at its end.
+    pub end: f64,
+    /// Length of the increments, where the file fixes it.
+    pub increment: Option<f64>,
+}
+
+/// A material: elastic, and what its file adds.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Material {
     /// Its name.
     pub name: String,
@@ -115,6 +151,23 @@ pub struct Material {
     pub poisson: f64,
     /// Mass per volume; 0 where none is given.
     pub density: f64,
+    /// Temperature, Young's modulus and Poisson's ratio, where they depend on it.
+    pub elastic_table: Vec<[f64; 3]>,
+    /// E₁, E₂, E₃, ν₁₂, ν₁₃, ν₂₃, G₁₂, G₁₃, G₂₃ of an orthotropic material.
+    pub orthotropic: Option<[f64; 9]>,
+    /// Yield stress over plastic strain, from strain 0; none: elastic.
+    pub yield_curve: Vec<[f64; 2]>,
+    /// Expansion by heat.
+    pub expansion: Option<Expansion>,
+}
+
+/// Expansion of a material by heat.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expansion {
+    /// Temperature and secant coefficient.
+    pub table: Vec<[f64; 2]>,
+    /// Temperature without strain.
+    pub reference: f64,
 }
 
 /// The material of a group of cells.
@@ -124,33 +177,8 @@ pub struct Section {
     pub group: String,
     /// The name of the material.
     pub material: String,
-}
-
-/// Displacements prescribed for a group of nodes.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Support {
-    /// The group.
-    pub group: String,
-    /// Value by direction; `None` where it is free.
-    pub values: [Option<f64>; 3],
-}
-
-/// A load on a group.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Load {
-    /// The group.
-    pub group: String,
-    /// Kind of the load.
-    pub kind: LoadKind,
-}
-
-/// Load on a group.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LoadKind {
-    /// The same force on each node.
-    Force([f64; 3]),
-    /// Force per area against the outward normal of the faces.
-    Pressure(f64),
+    /// Thickness of plane elements.
+    pub thickness: f64,
 }
 
 /// Assumption of a planar mesh.

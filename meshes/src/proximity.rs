@@ -145,7 +145,7 @@ pub fn find_pairs(mesh: &mut Mesh) -> Vec<Pair> {
     }
     let pair = |(at, (slave, masters)): (usize, (String, Vec<usize>))| {
         let master = group_of(mesh, &masters, &all, &mut cells_of, || format!("Contact_{}_Master", at + 1));
-        Pair { tied: false, slave, master, friction: 0.0 }
+        Pair::of(slave, master)
     };
     named_slaves.into_iter().enumerate().map(pair).collect()
 }

@@ -76,6 +76,8 @@ fn drop_nodes(mesh: &mut Mesh) -> usize {
     let mut used = vec![false; mesh.points.len()];
     let of_cells = (0..mesh.cells.len()).flat_map(|cell| mesh.cells.nodes(cell));
     of_cells.for_each(|&node| used[node as usize] = true);
+    let of_equations = mesh.equations.iter().flat_map(|equation| &equation.terms);
+    of_equations.for_each(|&(node, ..)| used[node as usize] = true);
     let count = used.iter().filter(|used| !**used).count();
     if count == 0 {
         return 0;
@@ -87,6 +89,9 @@ fn drop_nodes(mesh: &mut Mesh) -> usize {
     mesh.points = (0..used.len()).filter(kept).map(|at| mesh.points[at]).collect();
     for cell in 0..mesh.cells.len() {
         mesh.cells.nodes_mut(cell).iter_mut().for_each(|node| *node = place[*node as usize].expect("it is used"));
+    }
+    for (node, ..) in mesh.equations.iter_mut().flat_map(|equation| &mut equation.terms) {
+        *node = place[*node as usize].expect("it is used");
     }
     for group in &mut mesh.groups {
         group.nodes = group.nodes.iter().filter_map(|&node| place[node as usize]).collect();

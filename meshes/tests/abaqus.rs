@@ -5,7 +5,9 @@ use std::path::Path;
 use zelus_core::geometry::mapping;
 use zelus_core::io::format_of;
 use zelus_meshes::Mesh;
-use zelus_meshes::mesh::{LoadKind, Pair};
+use zelus_meshes::conditions::LoadKind;
+use zelus_meshes::history::History;
+use zelus_meshes::mesh::Pair;
 
 fn read(path: &Path) -> zelus_core::Result<(Mesh, String)> {
     let (mesh, said) = zelus_meshes::read(path, format_of(path).unwrap())?;
@@ -32,7 +34,7 @@ fn instances_are_placed_and_their_sets_named() {
     // node 1 of the upper block: up by 1, then a quarter turn about the axis through (0.5, 0.5)
     let corner = mesh.points[8];
     assert!(corner.iter().zip([1.0, 0.0, 1.0]).all(|(a, b)| (a - b).abs() < 1e-12), "{corner:?}");
-    for (name, nodes) in [("LOWER_Low", 4), ("UPPER_Low", 4), ("LOWER_Edge", 2), ("Side", 2)] {
+    for (name, nodes) in [("LOWER_Low", 4), ("UPPER_Low", 4), ("Edge", 2), ("Side", 2)] {
         assert_eq!(mesh.group(name).unwrap_or_else(|| panic!("{name}")).nodes.len(), nodes, "{name}");
     }
 }
@@ -46,7 +48,7 @@ fn surfaces_point_outward_and_make_pairs() {
         assert!((mapping::centre(shape, &points)[2] - z).abs() < 1e-12, "{name}");
         assert!((mapping::vector_area(shape, &points)[2] - up).abs() < 1e-12, "{name}");
     }
-    let pair = Pair { tied: false, slave: "UPPER_Under".into(), master: "LOWER_Over".into(), friction: 0.3 };
+    let pair = Pair { friction: 0.3, ..Pair::of("UPPER_Under".into(), "LOWER_Over".into()) };
     assert_eq!(mesh.pairs, [pair]);
 }
 
@@ -56,17 +58,33 @@ fn materials_supports_and_loads_are_kept() {
     let steel = &mesh.materials[0];
     assert_eq!((steel.young, steel.poisson, steel.density), (Some(1000.0), 0.0, 7.8));
     assert_eq!(mesh.sections.len(), 2);
-    let held: Vec<_> = mesh.supports.iter().map(|support| (support.group.as_str(), support.values)).collect();
+    let value = |value: &Option<History>| value.as_ref().and_then(History::as_constant);
+    let held: Vec<_> =
+        mesh.supports.iter().map(|support| (support.group.as_str(), support.values.each_ref().map(value))).collect();
     assert_eq!(held, [("LOWER_Low", [Some(0.0); 3]), ("Side", [Some(0.0), Some(0.0), None])]);
-    assert_eq!(mesh.loads[0].kind, LoadKind::Pressure(10.0));
+    assert_eq!(mesh.loads[0].kind, LoadKind::Pressure(History::ramp(1.0, 10.0)));
 }
 
 const TRIANGLE: &str = "*NODE\n1,0,0\n2,1,0\n3,0,1\n*ELEMENT,TYPE=CPS3,ELSET=E\n7,1,2,3\n";
 
+/// The message that names each line: file, line, and the fact.
+fn assert_says(said: &str, line: u32, fact: &str) {
+    let place = format!("test.inp:{line}: ");
+    assert!(said.lines().any(|own| own.contains(&place) && own.contains(fact)), "{line}: {fact}: {said}");
+}
+
 #[test]
-fn what_is_not_read_is_said() {
-    let (_, said) = of_text(&format!("{TRIANGLE}*TRANSFORM,NSET=N\n1,0,0,0,1,0\n*PLASTIC\n1,2\n")).unwrap();
-    assert!(said.contains("not read: PLASTIC, TRANSFORM"), "{said}");
+fn cards_and_parameters_that_are_not_read_are_named_with_their_lines() {
+    let text = format!(
+        "{TRIANGLE}*TRANSFORM,NSET=N\n1,0,0,0,1,0\n*VISCOELASTIC\n1,2\n*STEP\n*STATIC\n*BOUNDARY,SUBMODEL\n1,1,2\n*FILM\n*FILM\n"
+    );
+    let (mesh, said) = of_text(&text).unwrap();
+    assert_eq!((mesh.points.len(), mesh.supports.len()), (3, 1));
+    assert_says(&said, 7, "there is no node or set of nodes N");
+    assert_says(&said, 9, "*VISCOELASTIC is not read");
+    assert_says(&said, 13, "SUBMODEL of *BOUNDARY is not read");
+    assert_says(&said, 15, "*FILM is not read (lines 15, 16)");
+    assert!(!said.contains("HEADING") && !said.contains("END STEP"), "{said}");
 }
 
 #[test]
@@ -80,30 +98,117 @@ fn elements_that_come_in_as_simpler_ones_are_named() {
     assert!(!said.contains("elements CPS4"), "{said}");
 }
 
+/// One line that cannot be read never costs the file.
 #[test]
-fn what_does_not_fit_is_refused_with_its_line() {
+fn lines_that_do_not_fit_are_left_out_and_named() {
     for (text, fact, line) in [
-        ("*ELEMENT,TYPE=CPS3\n8,1,2,9\n", "element 8 has node 9, which is not there", 7),
+        ("*ELEMENT,TYPE=CPS3\n8,1,2,9\n", "element 8 has node 9, which is not there", 8),
         ("*ELEMENT,TYPE=C3D5\n8,1,2,3,4,5\n", "elements of type C3D5 are not known", 7),
-        ("*NSET,NSET=A\nB\n", "there is no node or set of nodes B", 7),
-        ("*SURFACE,NAME=S\nE,S4\n", "element 7 has no face \"S4\"", 7),
-        ("*NODE\n1,0,0\n", "node 1 stands there twice", 7),
-        ("*NODE\n9,x,0\n", "\"x\" is no number", 7),
-        ("*CONTACT PAIR\nA,B\n", "a pair names the surface A", 0),
+        ("*NSET,NSET=A\nB\n", "there is no node or set of nodes B", 8),
+        ("*SURFACE,NAME=S\nE,S4\n", "element 7 has no face \"S4\"", 8),
+        ("*NODE\n1,0,0\n", "node 1 stands there twice", 8),
+        ("*NODE\n9,x,0\n", "\"x\" is no number", 8),
+        ("*CONTACT PAIR\nA,B\n", "there is no surface A", 8),
+        ("*INCLUDE, INPUT=nothing.inp\n", "there is no file", 7),
+        ("*SOLID SECTION, ELSET=X, MATERIAL=M\n", "there is no set of elements X", 7),
+        ("*CLOAD, AMPLITUDE=X\n1,1,2.\n", "there is no *AMPLITUDE X", 7),
+        ("*CLOAD\n1,11,2.\n", "degree of freedom 11 is no displacement", 8),
     ] {
-        let error = of_text(&format!("{TRIANGLE}{text}")).unwrap_err().to_string();
-        assert!(error.contains(fact), "{error}");
-        assert!(line == 0 || error.contains(&format!("test.inp:{line}")), "{error}");
+        let (mesh, said) = of_text(&format!("{TRIANGLE}{text}")).unwrap();
+        assert_says(&said, line, fact);
+        assert_eq!(mesh.cells.len(), 1, "{text}");
     }
+    let error = of_text("*NODE\n1,0,0\n*ELEMENT,TYPE=C3D5\n8,1\n").unwrap_err().to_string();
+    assert!(error.contains("no elements"), "{error}");
+}
+
+#[test]
+fn files_of_any_encoding_and_line_end_are_read() {
+    let plain = format!("*HEADING\nTräger\n{TRIANGLE}*NSET,NSET=Süd\n1,2\n");
+    let latin: Vec<u8> = plain.chars().map(|c| c as u8).collect();
+    let marked = [b"\xEF\xBB\xBF".to_vec(), plain.clone().into_bytes()].concat();
+    let wide: Vec<u8> = "\u{feff}".encode_utf16().chain(plain.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    let mac = plain.replace('\n', "\r").into_bytes();
+    let windows = plain.replace('\n', "\r\n").into_bytes();
+    for bytes in [latin, marked, wide, mac, windows] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("test.inp");
+        std::fs::write(&path, bytes).unwrap();
+        let (mesh, said) = read(&path).unwrap();
+        assert_eq!((mesh.cells.len(), mesh.group("Süd").unwrap().nodes.len(), said.as_str()), (1, 2, ""));
+    }
+}
+
+/// Sets of nodes, sets of elements and surfaces have names of their own.
+#[test]
+fn sets_of_different_kinds_with_one_name_stay_apart() {
+    let text =
+        format!("{TRIANGLE}*NSET,NSET=TOP\n1\n*ELSET,ELSET=TOP\n7\n*SURFACE,NAME=TOP\nE,S2\n*BOUNDARY\nTop,1,2\n");
+    let (mesh, said) = of_text(&text).unwrap();
+    assert_eq!(said, "");
+    let size = |name: &str| mesh.group(name).map(|group| (group.nodes.len(), group.cells.len()));
+    assert_eq!(["TOP", "TOP_Elements", "TOP_Surface"].map(size), [Some((1, 0)), Some((0, 1)), Some((0, 1))]);
+    assert_eq!(mesh.supports[0].group, "TOP");
+}
+
+fn loads_of(text: &str) -> Vec<(String, LoadKind)> {
+    let (mesh, said) = of_text(text).unwrap();
+    assert_eq!(said, "");
+    mesh.loads.into_iter().map(|load| (load.group, load.kind)).collect()
+}
+
+/// Loads of one step add up, those of a later one replace them.
+#[test]
+fn loads_of_steps_add_up_or_replace() {
+    let text = format!(
+        "{TRIANGLE}*NSET,NSET=N\n1,3\n*STEP\n*STATIC\n*DLOAD\nE,P2,4.\n*DLOAD\nE,P2,1.\n*CLOAD\n3,2,-5.\nN,2,-1.\n3,1,2.\n\
+         *END STEP\n*STEP\n*STATIC\n*CLOAD\n3,2,-6.\n*END STEP\n"
+    );
+    let force = |x: History, y: History| LoadKind::Force([x, y, History::default()]);
+    let step = |first: f64, second: f64| History::ramp(1.0, first).then(1.0, [[2.0, second]]);
+    let loads = loads_of(&text);
+    let groups: Vec<&str> = loads.iter().map(|load| load.0.as_str()).collect();
+    assert_eq!(groups, ["Node_1", "Node_3", "Pressure_1"]);
+    assert_eq!(loads[0].1, force(History::default(), History::ramp(1.0, -1.0)));
+    assert_eq!(loads[1].1, force(History::ramp(1.0, 2.0), step(-6.0, -6.0)));
+    assert_eq!(loads[2].1, LoadKind::Pressure(History::ramp(1.0, 5.0)));
+}
+
+#[test]
+fn supports_of_later_steps_begin_and_end_with_them() {
+    let text = format!(
+        "{TRIANGLE}*BOUNDARY\n1,1,2\n*STEP\n*STATIC\n*BOUNDARY\n2,2\n*END STEP\n*STEP\n*STATIC\n1.,4.\n*BOUNDARY,OP=NEW\n1,1,2\n\
+         *BOUNDARY,TYPE=VELOCITY\n3,1,1,0.5\n*END STEP\n"
+    );
+    let (mesh, said) = of_text(&text).unwrap();
+    assert_eq!(said, "");
+    let spans: Vec<_> = mesh.supports.iter().map(|support| (support.group.as_str(), support.interval)).collect();
+    assert_eq!(spans, [("Node_1", (0.0, None)), ("Node_2", (0.0, Some(1.0))), ("Node_3", (1.0, None))]);
+    let moved = mesh.supports[2].values[0].clone().unwrap();
+    assert_eq!([moved.at(1.0), moved.at(3.0), moved.at(5.0)], [0.0, 1.0, 2.0]);
+    assert_eq!(mesh.steps.iter().map(|step| step.end).collect::<Vec<_>>(), [1.0, 5.0]);
+}
+
+#[test]
+fn transformed_nodes_have_forces_and_supports_along_their_axes() {
+    let text = format!(
+        "{TRIANGLE}*NSET,NSET=N\n2,3\n*TRANSFORM,NSET=N,TYPE=C\n0,0,0,0,0,1\n*BOUNDARY\nN,2\n*STEP\n*STATIC\n*CLOAD\nN,1,3.\n*END STEP\n"
+    );
+    let (mesh, said) = of_text(&text).unwrap();
+    assert_eq!(said, "");
+    assert!(matches!(mesh.supports[0].axes, Some(zelus_meshes::conditions::Axes::Cylindrical { .. })));
+    assert_eq!(mesh.supports[0].values.each_ref().map(Option::is_some), [false, true, false]);
+    let at_end = |kind: &LoadKind| match kind {
+        LoadKind::Force(values) => values.each_ref().map(|value| value.at(1.0)),
+        other => panic!("{other:?}"),
+    };
+    let forces: Vec<_> = mesh.loads.iter().map(|load| (load.group.as_str(), at_end(&load.kind))).collect();
+    assert_eq!(forces, [("Node_2", [3.0, 0.0, 0.0]), ("Node_3", [0.0, 3.0, 0.0])]);
 }
 
 #[test]
 fn pressures_on_faces_of_elements_become_a_part() {
-    let text = format!("{TRIANGLE}*BOUNDARY\n1,1,2\n*STEP\n*DLOAD\nE,P2,4.\n*CLOAD\n3,2,-5.\n*STEP\n*CLOAD\n3,2,-6.\n");
-    let (mesh, said) = of_text(&text).unwrap();
-    assert!(said.contains("*CLOAD of step 2 is left out"), "{said}");
-    let loads: Vec<_> = mesh.loads.iter().map(|load| (load.group.as_str(), load.kind)).collect();
-    assert_eq!(loads, [("Node_3", LoadKind::Force([0.0, -5.0, 0.0])), ("Pressure_1", LoadKind::Pressure(4.0))]);
+    let (mesh, _) = of_text(&format!("{TRIANGLE}*BOUNDARY\n1,1,2\n*STEP\n*DLOAD\nE,P2,4.\n")).unwrap();
     let cell = mesh.group("Pressure_1").unwrap().cells[0] as usize;
     assert!((mapping::domain_size(mesh.cells.shapes[cell], &mesh.points_of(cell)) - 2.0_f64.sqrt()).abs() < 1e-12);
     assert_eq!(mesh.supports[0].group, "Node_1");

@@ -153,3 +153,181 @@ fn starter_decks_do_not_lock() {
         assert!(output.status.success() && !said(&output).contains("[locking]"), "{}", said(&output));
     }
 }
+
+/// Nodes of a box of `cells` hexahedra from `corner`, with ids from `first`, and its elements.
+fn box_of_abaqus(first: u32, corner: f64, cells: u32, set: &str) -> String {
+    let row = cells + 1;
+    let at = |i: u32| f64::from(i) / f64::from(cells);
+    let id = |i: u32, j: u32, k: u32| first + i + row * (j + row * k);
+    let mut nodes = "*NODE\n".to_owned();
+    let mut elements = format!("*ELEMENT, TYPE=C3D8, ELSET={set}\n");
+    for (k, j, i) in (0..row).flat_map(|k| (0..row).flat_map(move |j| (0..row).map(move |i| (k, j, i)))) {
+        nodes += &format!("{}, {}, {}, {}\n", id(i, j, k), at(i), at(j), corner + at(k));
+        if i < cells && j < cells && k < cells {
+            let square = |k| [id(i, j, k), id(i + 1, j, k), id(i + 1, j + 1, k), id(i, j + 1, k)];
+            let all: Vec<String> = square(k).iter().chain(&square(k + 1)).map(u32::to_string).collect();
+            elements += &format!("{}, {}\n", id(i, j, k), all.join(", "));
+        }
+    }
+    nodes + &elements
+}
+
+/// Runs the deck that `zelus new` writes of an input file; its folder, the simulation at its end, and the messages of `new`.
+fn of_input(text: &str) -> (tempfile::TempDir, Simulation, String) {
+    let scratch = tempfile::tempdir().unwrap();
+    std::fs::write(scratch.path().join("part.inp"), text).unwrap();
+    let output = zelus(scratch.path(), &["new", "--from", "part.inp", "-o", "deck"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let simulation = solved(&scratch.path().join("deck/ProjectParameters.json"));
+    (scratch, simulation, said(&output))
+}
+
+/// The sum of a component of the reactions.
+fn reaction(simulation: &Simulation, axis: usize) -> f64 {
+    let reactions = simulation.field("REACTION").unwrap();
+    reactions.iter().skip(axis).step_by(3).filter(|force| **force > 0.0).sum()
+}
+
+/// Two cubes of 2³ and 3³ elements, the upper moved up by 0.001: E u A / l = 210e3 · 0.001 / 2 = 105 where they hold together.
+fn pulled_cubes(joint: &str) -> String {
+    let (low, up) = (box_of_abaqus(1, 0.0, 2, "LOW"), box_of_abaqus(101, 1.0, 3, "UP"));
+    format!(
+        "{low}{up}*NSET, NSET=BOTTOM, GENERATE\n1, 9\n*NSET, NSET=TOP, GENERATE\n149, 164\n\
+         *NSET, NSET=UNDER, GENERATE\n101, 116\n*NSET, NSET=OVER, GENERATE\n19, 27\n\
+         *SURFACE, NAME=SM, TYPE=NODE\nOVER\n*SURFACE, NAME=SS, TYPE=NODE\nUNDER\n\
+         *MATERIAL, NAME=M\n*ELASTIC\n210000., 0.\n*SOLID SECTION, ELSET=LOW, MATERIAL=M\n*SOLID SECTION, ELSET=UP, MATERIAL=M\n\
+         {joint}*BOUNDARY\nBOTTOM, 1, 3\n*STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 2\nTOP, 3, 3, 0.001\n*END STEP\n"
+    )
+}
+
+#[test]
+fn ties_and_tied_contact_of_abaqus_hold() {
+    let tied = "*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED\n1.E7\n*FRICTION\n1., 1.E7\n\
+         *CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\nss, SM\n";
+    for joint in ["*TIE, NAME=T\nSS, sm\n", tied] {
+        let (_scratch, simulation, said) = of_input(&pulled_cubes(joint));
+        assert!(!said.contains("warning"), "{said}");
+        let force = reaction(&simulation, 2);
+        assert!((force / 105.0 - 1.0).abs() < 1e-9, "{force}");
+    }
+}
+
+/// A tie beside a contact pair: a third cube below is pressed by the others.
+#[test]
+fn ties_of_abaqus_stand_beside_contact() {
+    for friction in ["", "*FRICTION\n0.3\n"] {
+        let joint = format!(
+            "{}*NSET, NSET=ALL, GENERATE\n201, 208\n*NSET, NSET=FACE, GENERATE\n205, 208\n*SURFACE, NAME=SF, TYPE=NODE\nFACE\n\
+             *SURFACE, NAME=SB, TYPE=NODE\nBOTTOM\n*SOLID SECTION, ELSET=BASE, MATERIAL=M\n\
+             *SURFACE INTERACTION, NAME=I\n{friction}*TIE, NAME=T\nSS, SM\n*CONTACT PAIR, INTERACTION=I\nSB, SF\n*BOUNDARY\nALL, 1, 3\n",
+            box_of_abaqus(201, -1.0, 1, "BASE")
+        );
+        let text =
+            pulled_cubes(&joint).replace("BOTTOM, 1, 3\n", "BOTTOM, 1, 2\n").replace("3, 3, 0.001", "3, 3, -0.001");
+        let (_scratch, simulation, _) = of_input(&text);
+        let force = reaction(&simulation, 2);
+        assert!((force / 105.0 - 1.0).abs() < 1e-6, "{force}");
+    }
+}
+
+/// Forces at nodes and no face in the file: 40 in all on a column of stiffness 1000, also where each node has a force of its own.
+#[test]
+fn forces_at_nodes_alone_make_a_deck() {
+    let column = |loads: &str| {
+        format!(
+            "{}*NSET, NSET=LOW, GENERATE\n1, 9\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n*SOLID SECTION, ELSET=A, MATERIAL=M\n\
+             *STEP\n*STATIC\n*BOUNDARY\nLOW, 1, 3\n*CLOAD\n{loads}*END STEP\n",
+            box_of_abaqus(1, 0.0, 2, "A")
+        )
+    };
+    let quarters = [(19, 2.5), (20, 5.0), (21, 2.5), (22, 5.0), (23, 10.0), (24, 5.0), (25, 2.5), (26, 5.0), (27, 2.5)];
+    let loads: String = quarters.iter().map(|(node, force)| format!("{node}, 3, -{force}\n")).collect();
+    let (_scratch, simulation, _) = of_input(&column(&loads));
+    assert!((reaction(&simulation, 2) - 40.0).abs() < 1e-9);
+    let displacement = simulation.field("DISPLACEMENT").unwrap();
+    assert!((displacement[3 * 22 + 2] + 0.04).abs() < 1e-12, "{}", displacement[3 * 22 + 2]);
+    // forces that differ from node to node come from a file
+    let many: Vec<(u32, f64)> = (5..65).map(|node| (node, f64::from(node) * 0.01)).collect();
+    let loads: String = many.iter().map(|(node, force)| format!("{node}, 1, {force}\n{node}, 3, -{force}\n")).collect();
+    let text = column(&loads)
+        .replace(&box_of_abaqus(1, 0.0, 2, "A"), &box_of_abaqus(1, 0.0, 3, "A"))
+        .replace("1, 9\n", "1, 16\n");
+    let (scratch, simulation, _) = of_input(&text);
+    assert!(scratch.path().join("deck/forces.json").is_file());
+    let reactions = simulation.field("REACTION").unwrap();
+    let total: f64 = many.iter().map(|(_, force)| force).sum();
+    for (axis, wanted) in [-total, 0.0, total].into_iter().enumerate() {
+        let sum: f64 = reactions.iter().skip(axis).step_by(3).sum();
+        assert!((sum - wanted).abs() < 1e-9, "{axis}: {sum} in place of {wanted}");
+    }
+}
+
+/// A file as Abaqus/CAE writes it: sets and surfaces of the assembly with `instance=`. Two unit cubes pressed by 0.001 bear 105.
+#[test]
+fn sets_of_an_assembly_make_a_deck() {
+    let text = "*Heading\n*Part, name=Part-1\n*Node\n1,0.,0.,0.\n2,1.,0.,0.\n3,0.,1.,0.\n4,1.,1.,0.\n5,0.,0.,1.\n6,1.,0.,1.\n\
+        7,0.,1.,1.\n8,1.,1.,1.\n*Element, type=C3D8\n1, 1, 2, 4, 3, 5, 6, 8, 7\n*Elset, elset=all\n1\n\
+        *Solid Section, elset=all, material=M\n,\n*End Part\n*Assembly, name=Assembly\n\
+        *Instance, name=Part-1-1, part=Part-1\n*End Instance\n*Instance, name=Part-1-2, part=Part-1\n0.,0.,1.\n*End Instance\n\
+        *Nset, nset=Set-1, instance=Part-1-1\n 1, 2, 3, 4\n*Elset, elset=Set-1, instance=Part-1-1\n 1\n\
+        *Nset, nset=Set-2, instance=Part-1-2\n 5,6,7,8\n*Elset, elset=_Surf-1_S2, internal, instance=Part-1-1\n 1\n\
+        *Surface, type=ELEMENT, name=Surf-1\n_Surf-1_S2, S2\n*Elset, elset=_Surf-2_S1, internal, instance=Part-1-2\n 1\n\
+        *Surface, type=ELEMENT, name=Surf-2\n_Surf-2_S1, S1\n*End Assembly\n*Material, name=M\n*Elastic\n210000., 0.\n\
+        *Surface Interaction, name=I\n1.,\n*Friction\n0.3,\n*Surface Behavior, pressure-overclosure=HARD\n\
+        *Contact Pair, interaction=I, type=SURFACE TO SURFACE\nSurf-2, Surf-1\n*Boundary\nSet-1, ENCASTRE\n\
+        *Step, name=Step-1, nlgeom=NO\n*Static\n0.1,1.,1e-05,1.\n*Boundary\nSet-2, 1, 2\nSet-2, 3, 3, -0.001\n*End Step\n";
+    let (scratch, simulation, said) = of_input(text);
+    assert!(said.contains("contact: slave Surf-2, master Surf-1") && !said.contains("warning"), "{said}");
+    let force = reaction(&simulation, 2);
+    assert!((force / 105.0 - 1.0).abs() < 1e-6, "{force}");
+    let mesh = std::fs::read_to_string(scratch.path().join("deck/part.mdpa")).unwrap();
+    assert!(!mesh.contains("TotalLagrangian"));
+    let large = zelus(scratch.path(), &["new", "--from", "part.inp", "-o", "large"]);
+    assert!(large.status.success());
+    std::fs::write(scratch.path().join("part.inp"), text.replace("nlgeom=NO", "nlgeom=YES")).unwrap();
+    let large = zelus(scratch.path(), &["new", "--from", "part.inp", "-o", "nlgeom"]);
+    assert!(large.status.success());
+    let mesh = std::fs::read_to_string(scratch.path().join("nlgeom/part.mdpa")).unwrap();
+    assert!(mesh.contains("TotalLagrangianElement3D8N"));
+}
+
+/// A bar of length and area 1 and stiffness 1000 under two forces, one by an amplitude that falls back to 0.
+#[test]
+fn amplitudes_and_steps_of_abaqus_give_histories() {
+    let bar = |steps: &str| {
+        format!(
+            "{}*NSET, NSET=LOW, GENERATE\n1, 4\n*NSET, NSET=TOP, GENERATE\n5, 8\n*MATERIAL, NAME=M\n*ELASTIC\n1000., 0.\n\
+             *SOLID SECTION, ELSET=A, MATERIAL=M\n*AMPLITUDE, NAME=RAMP\n0.,0.,0.5,1.,1.,0.\n*AMPLITUDE, NAME=SAW\n\
+             0.,0., .1,1., .2,0., .3,1.\n.4,0., .5,1., .6,0., .7,1.\n.8,0.,1.,1.\n*BOUNDARY\nLOW, 1, 3\n{steps}",
+            box_of_abaqus(1, 0.0, 1, "A")
+        )
+    };
+    let up = |simulation: &Simulation| simulation.field("DISPLACEMENT").unwrap()[3 * 7 + 2];
+    let along = |simulation: &Simulation| -> f64 { simulation.field("REACTION").unwrap().iter().step_by(3).sum() };
+    for (steps, wanted, shear) in [
+        ("*STEP\n*STATIC\n*CLOAD, AMPLITUDE=RAMP\nTOP, 3, 10.\n*END STEP\n", 0.0, 0.0),
+        ("*STEP\n*STATIC\n*CLOAD, AMPLITUDE=RAMP\nTOP, 1, 10.\n*CLOAD\nTOP, 3, 10.\n*END STEP\n", 0.04, 0.0),
+        ("*STEP\n*STATIC\n*CLOAD, AMPLITUDE=SAW\nTOP, 3, 10.\n*END STEP\n", 0.04, 0.0),
+        ("*STEP\n*STATIC\n0.1, 0.5\n*CLOAD, AMPLITUDE=RAMP\nTOP, 3, 10.\n*END STEP\n", 0.04, 0.0),
+        ("*STEP\n*STATIC\n*CLOAD\nTOP, 3, 10.\nTOP, 3, 5.\nTOP, 1, 1.\n*END STEP\n", 0.06, -4.0),
+        (
+            "*STEP\n*STATIC\n*CLOAD\nTOP, 3, 10.\n*END STEP\n*STEP\n*STATIC\n*CLOAD\nTOP, 3, -5.\n*END STEP\n",
+            -0.02,
+            0.0,
+        ),
+        ("*STEP\n*STATIC\n*DLOAD\nA, P2, -20.\n*DLOAD\nA, P2, -30.\n*END STEP\n", 0.05, 0.0),
+        ("*STEP\n*STATIC\n1., 4.\n*BOUNDARY, TYPE=VELOCITY\nTOP, 3, 3, 0.01\n*END STEP\n", 0.04, 0.0),
+        (
+            "*STEP\n*STATIC\n*BOUNDARY\nTOP, 3, 3, 0.1\n*END STEP\n*STEP\n*STATIC\n*BOUNDARY, OP=NEW\nLOW, 1, 3\n*END STEP\n",
+            0.0,
+            0.0,
+        ),
+    ] {
+        let (_scratch, simulation, said) = of_input(&bar(steps));
+        assert!(!said.contains("warning"), "{said}");
+        let found = up(&simulation);
+        // shear bends the bar, so node 8 is no measure there
+        assert!(shear != 0.0 || (found - wanted).abs() < 1e-9, "{steps}: {found} in place of {wanted}");
+        assert!((along(&simulation) - shear).abs() < 1e-9, "{steps}: {}", along(&simulation));
+    }
+}

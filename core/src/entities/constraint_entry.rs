@@ -48,3 +48,21 @@ register! { ConstraintEntry "LinearMasterSlaveConstraint",
         }])
     },
 }
+
+register! { ConstraintEntry "LinearMasterSlaveConstraintOfComponents",
+    about: "a node's unknown is a constant and weights times unknowns of other nodes, each with its own variable: the heading names that of the slave, then one for each master",
+    source: "u_slave = Σ weight · u_master + constant",
+    build: |row| {
+        let [slave, masters @ ..] = row.variables else { return Err("it has no variables".to_owned()) };
+        if masters.len() != row.masters.len() || row.weights.len() != row.masters.len() {
+            return Err(format!("{} masters, but {} variables for them", row.masters.len(), masters.len()));
+        }
+        let unknowns = row.masters.iter().copied().zip(masters.iter().copied());
+        Ok(vec![MasterSlaveConstraint {
+            id: row.id,
+            constant: row.constant,
+            ..MasterSlaveConstraint::new((row.slave, *slave), unknowns.zip(row.weights.iter().copied()).collect())
+        }])
+    },
+    mixes_variables: true,
+}

@@ -1,30 +1,66 @@
 //! The file as keywords with their data.
 
+use std::cell::Cell;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
-use zelus_core::diagnostics::{Diagnostic, Error, Place, Result};
+use zelus_core::diagnostics::{Diagnostic, Error, Place, Report, Result};
 
 use crate::source;
 
 /// Files that include each other are read to this depth.
 const DEPTH: usize = 16;
 
+/// A line of data below a keyword.
+#[derive(Debug, Clone)]
+pub(super) struct Row {
+    /// Fields without blanks around them.
+    pub fields: Vec<String>,
+    /// Line of the file, from 1.
+    pub line: u32,
+}
+
+impl Row {
+    /// A field from 0; empty where there is none.
+    pub(super) fn get(&self, at: usize) -> &str {
+        self.fields.get(at).map_or("", String::as_str)
+    }
+}
+
+/// A parameter of a keyword, and whether the reader has asked for it.
+#[derive(Debug)]
+pub(super) struct Parameter {
+    /// In capitals.
+    pub name: String,
+    value: String,
+    pub is_read: Cell<bool>,
+}
+
 /// A keyword with its parameters and the lines of data below it.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug)]
 pub(super) struct Card {
     /// In capitals, words separated by one blank.
     pub keyword: String,
-    parameters: Vec<(String, String)>,
-    /// Fields of each line, without blanks around them.
-    pub lines: Vec<Vec<String>>,
-    file: PathBuf,
+    pub parameters: Vec<Parameter>,
+    pub rows: Vec<Row>,
+    /// Whether the reader has used it.
+    pub is_read: Cell<bool>,
+    file: Rc<PathBuf>,
     line: u32,
 }
 
 impl Card {
-    /// The value of a parameter; empty where it has none.
+    /// The value of a parameter, which counts as read; empty where it has none.
     pub(super) fn get(&self, name: &str) -> Option<&str> {
-        self.parameters.iter().find(|(own, _)| own == name).map(|(_, value)| value.as_str())
+        let found = self.parameters.iter().find(|own| own.name == name)?;
+        found.is_read.set(true);
+        Some(&found.value)
+    }
+
+    /// Whether a parameter has this value, in any case; another value stays unread.
+    pub(super) fn says(&self, name: &str, value: &str) -> bool {
+        let found = self.parameters.iter().find(|own| own.name == name && own.value.eq_ignore_ascii_case(value));
+        found.inspect(|own| own.is_read.set(true)).is_some()
     }
 
     /// The value of a parameter that must be there.
@@ -32,9 +68,10 @@ impl Card {
         self.get(name).ok_or_else(|| self.wrong(format!("*{} has no {name}", self.keyword)))
     }
 
-    /// All fields that hold something.
-    pub(super) fn fields(&self) -> impl Iterator<Item = &str> {
-        self.lines.iter().flatten().map(String::as_str).filter(|field| !field.is_empty())
+    /// All fields that hold something, with their lines.
+    pub(super) fn fields(&self) -> impl Iterator<Item = (&str, u32)> {
+        let all = self.rows.iter().flat_map(|row| row.fields.iter().map(|field| (field.as_str(), row.line)));
+        all.filter(|(field, _)| !field.is_empty())
     }
 
     /// An error of this card.
@@ -42,51 +79,95 @@ impl Card {
         Diagnostic::error("mesh-syntax", fact).at(self.place()).into()
     }
 
+    /// An error of a line of this card.
+    pub(super) fn wrong_at(&self, line: u32, fact: impl std::fmt::Display) -> Error {
+        Diagnostic::error("mesh-syntax", format!("*{}: {fact}", self.keyword)).at(self.place_of(line)).into()
+    }
+
+    /// A warning about this card: a part of its meaning is not in the mesh.
+    pub(super) fn left_out(&self, fact: impl Into<String>) -> Diagnostic {
+        Diagnostic::warning("not-taken-over", fact).at(self.place())
+    }
+
     /// Where the keyword stands.
     pub(super) fn place(&self) -> Place {
-        Place::at(&self.file, self.line, 0)
+        self.place_of(self.line)
+    }
+
+    /// A line of its file.
+    pub(super) fn place_of(&self, line: u32) -> Place {
+        Place::at(&*self.file, line, 0)
     }
 
     /// A field as a number.
-    pub(super) fn number(&self, field: &str) -> Result<f64> {
+    pub(super) fn number(&self, field: &str, line: u32) -> Result<f64> {
         let number: f64 = field.to_ascii_lowercase().replace('d', "e").parse().unwrap_or(f64::NAN);
-        if number.is_finite() {
-            Ok(number)
-        } else {
-            Err(self.wrong(format!("*{}: {field:?} is no number", self.keyword)))
-        }
+        if number.is_finite() { Ok(number) } else { Err(self.wrong_at(line, format!("{field:?} is no number"))) }
+    }
+
+    /// The numbers of a line; an empty field is 0.
+    pub(super) fn numbers(&self, row: &Row) -> Result<Vec<f64>> {
+        let number = |field: &String| if field.is_empty() { Ok(0.0) } else { self.number(field, row.line) };
+        row.fields.iter().map(number).collect()
+    }
+
+    /// All numbers of all lines.
+    pub(super) fn all_numbers(&self) -> Result<Vec<f64>> {
+        self.fields().map(|(field, line)| self.number(field, line)).collect()
     }
 
     /// A field as the number of a node or element.
-    pub(super) fn label(&self, field: &str) -> Result<u32> {
-        field.parse().map_err(|_| self.wrong(format!("*{}: {field:?} is no number of a node or element", self.keyword)))
+    pub(super) fn label(&self, field: &str, line: u32) -> Result<u32> {
+        field.parse().map_err(|_| self.wrong_at(line, format!("{field:?} is no number of a node or element")))
+    }
+
+    /// A field as a degree of freedom.
+    pub(super) fn freedom(&self, field: &str, line: u32) -> Result<usize> {
+        field.parse().map_err(|_| self.wrong_at(line, format!("{field:?} is no degree of freedom")))
     }
 }
 
-/// The cards of a file and of those that it includes.
-pub(super) fn read(path: &Path) -> Result<Vec<Card>> {
+/// The cards of a file and of those that it includes; reports files that are missing.
+pub(super) fn read(path: &Path, report: &mut Report) -> Result<Vec<Card>> {
     let mut out = Vec::new();
-    add(path, 0, &mut out)?;
+    add(path, 0, &mut out, report)?;
     Ok(out)
 }
 
-fn add(path: &Path, depth: usize, out: &mut Vec<Card>) -> Result<()> {
-    if depth > DEPTH {
-        let fact = format!("files include each other more than {DEPTH} deep");
-        return Err(Diagnostic::error("mesh-syntax", fact).at(Place::file(path)).into());
+/// Text of any encoding: UTF-8, with a mark of the order of bytes or without, otherwise Latin-1.
+fn decoded(bytes: Vec<u8>) -> String {
+    let wide = |of: fn([u8; 2]) -> u16| {
+        let units: Vec<u16> = bytes[2..].chunks_exact(2).map(|two| of([two[0], two[1]])).collect();
+        String::from_utf16_lossy(&units)
+    };
+    match bytes.as_slice() {
+        [0xFF, 0xFE, ..] => return wide(u16::from_le_bytes),
+        [0xFE, 0xFF, ..] => return wide(u16::from_be_bytes),
+        _ => {}
     }
-    let bytes = source::read(path)?;
-    let text = String::from_utf8_lossy(&bytes);
-    let mut lines = text.lines().enumerate().filter(|(_, line)| !line.starts_with("**") && !line.trim().is_empty());
+    let text = String::from_utf8(bytes);
+    let text = text.unwrap_or_else(|error| error.into_bytes().into_iter().map(char::from).collect());
+    text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text)
+}
+
+fn add(path: &Path, depth: usize, out: &mut Vec<Card>, report: &mut Report) -> Result<()> {
+    let text = decoded(source::read(path)?).replace("\r\n", "\n").replace('\r', "\n");
+    let file = Rc::new(path.to_owned());
+    let is_data = |(_, line): &(usize, &str)| !line.trim_start().starts_with("**") && !line.trim().is_empty();
+    let mut lines = text.lines().enumerate().filter(is_data);
+    let mut stray = false;
     while let Some((at, line)) = lines.next() {
+        let number = at as u32 + 1;
         let Some(head) = line.trim().strip_prefix('*') else {
             let fields = line.trim().trim_end_matches(',').split(',').map(|field| field.trim().to_owned()).collect();
             match out.last_mut() {
-                Some(card) => card.lines.push(fields),
-                None => {
-                    let problem = Diagnostic::error("mesh-syntax", "data stand before the first keyword");
-                    return Err(problem.at(Place::at(path, at as u32 + 1, 0)).into());
+                Some(card) => card.rows.push(Row { fields, line: number }),
+                None if !stray => {
+                    stray = true;
+                    let problem = Diagnostic::warning("not-taken-over", "data stand before the first keyword");
+                    report.push(problem.at(Place::at(path, number, 0)));
                 }
+                None => {}
             }
             continue;
         };
@@ -101,19 +182,33 @@ fn add(path: &Path, depth: usize, out: &mut Vec<Card>) -> Result<()> {
             words.next().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase();
         let parameter = |word: &str| {
             let (name, value) = word.split_once('=').unwrap_or((word, ""));
-            (name.trim().to_ascii_uppercase(), value.trim().trim_matches('"').to_owned())
+            let name = name.split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase();
+            Parameter { name, value: value.trim().trim_matches('"').to_owned(), is_read: Cell::new(false) }
         };
-        let parameters = words.map(parameter).collect();
-        let card = Card { keyword, parameters, lines: Vec::new(), file: path.to_owned(), line: at as u32 + 1 };
+        let parameters = words.filter(|word| !word.trim().is_empty()).map(parameter).collect();
+        let card =
+            Card { keyword, parameters, rows: Vec::new(), is_read: Cell::new(false), file: file.clone(), line: number };
         if card.keyword == "INCLUDE" {
-            let file = path.with_file_name(card.require("INPUT")?);
-            if !file.is_file() {
-                return Err(card.wrong(format!("there is no file {} to include", file.display())));
-            }
-            add(&file, depth + 1, out)?;
+            include(&card, path, depth, out, report)?;
         } else {
             out.push(card);
         }
+    }
+    Ok(())
+}
+
+fn include(card: &Card, path: &Path, depth: usize, out: &mut Vec<Card>, report: &mut Report) -> Result<()> {
+    let Some(name) = card.get("INPUT") else {
+        report.push(card.left_out("*INCLUDE has no INPUT"));
+        return Ok(());
+    };
+    let file = path.with_file_name(name);
+    if !file.is_file() {
+        report.push(card.left_out(format!("there is no file {} to include", file.display())));
+    } else if depth == DEPTH {
+        report.push(card.left_out(format!("files include each other more than {DEPTH} deep")));
+    } else {
+        add(&file, depth + 1, out, report)?;
     }
     Ok(())
 }

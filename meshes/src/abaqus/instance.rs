@@ -17,13 +17,12 @@ impl Placement {
     /// Placement in the data of `*INSTANCE`.
     pub(super) fn of(card: &Card) -> Result<Self> {
         let mut out = Self::default();
-        let numbers = |line: &Vec<String>| line.iter().map(|field| card.number(field)).collect::<Result<Vec<f64>>>();
-        if let Some(line) = card.lines.first() {
-            let given = numbers(line)?;
+        if let Some(row) = card.rows.first() {
+            let given = card.numbers(row)?;
             out.translation.iter_mut().zip(given).for_each(|(to, from)| *to = from);
         }
-        if let Some(line) = card.lines.get(1) {
-            let given = numbers(line)?;
+        if let Some(row) = card.rows.get(1) {
+            let given = card.numbers(row)?;
             let Ok([ax, ay, az, bx, by, bz, angle]) = <[f64; 7]>::try_from(given) else {
                 return Err(card.wrong("a rotation is two points and an angle: seven numbers"));
             };

@@ -1,14 +1,21 @@
 //! The input files of Abaqus and CalculiX: parts and instances, sets, surfaces, ties and contact pairs.
 //!
-//! A part is read anew for each of its instances, whose name stands before those of its sets: `INSTANCE_SET`. Materials, supports
-//! and loads are kept for a starter deck. Source: CalculiX CrunchiX user's manual, "Input deck format".
+//! A part is read anew for each of its instances, whose name stands before those of its sets: `INSTANCE_SET`. Materials, supports,
+//! loads and couplings are kept for a starter deck, over the time of the steps. Lines that cannot be read are left out and named;
+//! so is every card and parameter that nothing has asked for. Source: CalculiX CrunchiX user's manual, "Input deck format".
 
 mod cards;
 mod abaqus_cells;
 mod instance;
+mod sets;
+mod unread;
+mod schedule;
 mod model;
-mod steps;
 mod surfaces;
+mod materials;
+mod contact;
+mod couplings;
+mod analysis;
 mod abaqus_writer;
 
 use std::path::Path;
@@ -25,11 +32,10 @@ use super::mesh::Mesh;
 /// Reads an input file; warns of contents that no mesh holds.
 ///
 /// # Errors
-/// A file that cannot be read, data that do not fit their keyword, names that are not there.
+/// A file that cannot be read.
 pub(crate) fn read_mesh(path: &Path) -> Result<(Mesh, Vec<Diagnostic>)> {
-    model::read(&cards::read(path)?, path)
+    model::read(path)
 }
-
 fn build(path: &Path, settings: &Settings) -> Result<(MdpaDocument, Vec<Diagnostic>)> {
     let (mesh, mut said) = read_mesh(path)?;
     let (document, mended) = finish(mesh, settings, path)?;

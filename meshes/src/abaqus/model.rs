@@ -2,317 +2,338 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::rc::Rc;
 
-use rustc_hash::FxHashMap;
-use zelus_core::diagnostics::{Diagnostic, Place, Report, Result};
+use rustc_hash::{FxHashMap, FxHashSet};
+use zelus_core::diagnostics::{Diagnostic, Error, Place, Report, Result, Severity, counted};
 
 use super::abaqus_cells;
-use super::cards::Card;
+use super::cards::{self, Card, Row};
 use super::instance::Placement;
-use super::steps::Interactions;
-use super::surfaces::Surface;
-use crate::mesh::{Material, Mesh, Section, word};
+use super::sets::{Kind, Sets};
+use super::unread;
+use crate::mesh::Mesh;
 
-/// Keywords that say nothing about a mesh, a material or a load, or that are told by others.
-const WITHOUT_MESH: [&str; 28] = [
-    "HEADING",
-    "PREPRINT",
-    "ASSEMBLY",
-    "END ASSEMBLY",
-    "END INSTANCE",
-    "END PART",
-    "NODE OUTPUT",
-    "ELEMENT OUTPUT",
-    "CONTACT OUTPUT",
-    "OUTPUT",
-    "RESTART",
-    "NODE FILE",
-    "EL FILE",
-    "NODE PRINT",
-    "EL PRINT",
-    "CONTACT FILE",
-    "CONTACT PRINT",
-    "SECTION PRINT",
-    "FILE FORMAT",
-    "MONITOR",
-    "END STEP",
-    "SURFACE BEHAVIOR",
-    "STATIC",
-    "CONTROLS",
-    "SOLVER",
-    "AMPLITUDE",
-    "TIME POINTS",
-    "PRINT",
-];
+/// Lines of a card that are named when they cannot be read; more are counted.
+const NAMED: usize = 3;
 
-/// A label or set within an instance; the name of the instance is empty outside of all.
-pub(super) type Named = (String, String);
+/// A card in the place where it acts.
+#[derive(Debug, Clone)]
+pub(super) struct Statement {
+    pub card: Rc<Card>,
+    /// The instance whose labels it lists; empty outside of all.
+    pub scope: String,
+    /// The instance to which its sets belong.
+    home: String,
+    placement: Placement,
+}
+
+impl Statement {
+    /// The instance to which its sets belong.
+    pub(super) fn home(&self) -> &str {
+        &self.home
+    }
+}
 
 /// Contents read so far.
 #[derive(Default)]
 pub(super) struct Model {
     pub mesh: Mesh,
-    /// Cards of each part.
-    parts: BTreeMap<String, Vec<Card>>,
     pub nodes: FxHashMap<(String, u32), u32>,
     pub elements: FxHashMap<(String, u32), u32>,
-    /// Indices of nodes by set.
-    pub node_sets: BTreeMap<Named, Vec<u32>>,
-    /// Indices of elements by set.
-    pub element_sets: BTreeMap<Named, Vec<u32>>,
-    /// Surfaces, made when all elements are there.
-    pub surfaces: Vec<Surface>,
-    pub interactions: Interactions,
-    /// The material under way.
-    material: Option<usize>,
-    /// Steps begun so far.
-    pub step: usize,
-    /// Keywords that are not read, with their number.
-    unread: BTreeMap<String, usize>,
-    structural: BTreeMap<String, usize>,
+    /// Elements of types that are not known: sets may list them.
+    omitted: FxHashSet<(String, u32)>,
+    pub sets: Sets,
+    /// Types of elements that come in as cells without stiffness.
+    structural: BTreeMap<String, Place>,
     /// Types whose elements come in as simpler ones: the missing feature, and the remedy.
-    simpler: BTreeMap<String, (&'static str, &'static str)>,
+    simpler: BTreeMap<String, (&'static str, &'static str, Place)>,
     pub report: Report,
 }
 
-/// The mesh of the cards, with warnings.
-pub(super) fn read(cards: &[Card], path: &Path) -> Result<(Mesh, Vec<Diagnostic>)> {
+/// The mesh of a file, with warnings.
+pub(super) fn read(path: &Path) -> Result<(Mesh, Vec<Diagnostic>)> {
     let mut model = Model::default();
-    let mut part: Option<String> = None;
-    for card in cards {
-        match card.keyword.as_str() {
-            "PART" => part = Some(card.require("NAME")?.to_ascii_uppercase()),
-            "END PART" => part = None,
-            "INSTANCE" => model.instance(card)?,
-            _ => match &part {
-                Some(name) => model.parts.entry(name.clone()).or_default().push(card.clone()),
-                None => model.card(card, &scope_of(card), &Placement::default())?,
-            },
-        }
+    let cards: Vec<Rc<Card>> = cards::read(path, &mut model.report)?.into_iter().map(Rc::new).collect();
+    let statements = model.statements(&cards);
+    for statement in &statements {
+        let read = model.of_mesh(statement);
+        model.tolerate(read);
     }
-    model.finish(path)
-}
-
-/// The instance whose nodes or elements a card of the assembly lists.
-fn scope_of(card: &Card) -> String {
-    card.get("INSTANCE").unwrap_or_default().to_ascii_uppercase()
+    let surfaces: Vec<&Statement> = statements.iter().filter(|own| own.card.keyword == "SURFACE").collect();
+    model.make_surfaces(&surfaces);
+    model.sets.make_groups(&mut model.mesh);
+    model.read_materials(&statements);
+    model.read_contact(&statements);
+    model.read_analysis(&statements);
+    let all: Vec<&Card> = cards.iter().map(Rc::as_ref).collect();
+    unread::report(&all, &mut model.report);
+    model.finish()
 }
 
 impl Model {
-    fn instance(&mut self, card: &Card) -> Result<()> {
-        let (name, part) = (card.require("NAME")?.to_ascii_uppercase(), card.require("PART")?.to_ascii_uppercase());
-        let placement = Placement::of(card)?;
-        let cards = self.parts.get(&part).ok_or_else(|| card.wrong(format!("there is no part {part}")))?.clone();
-        cards.iter().try_for_each(|own| self.card(own, &name, &placement))
+    /// The cards of the assembly, and those of each part once for each of its instances.
+    fn statements(&mut self, cards: &[Rc<Card>]) -> Vec<Statement> {
+        let mut parts: BTreeMap<String, Vec<Rc<Card>>> = BTreeMap::new();
+        let mut part: Option<String> = None;
+        let mut instance = (String::new(), Placement::default());
+        let mut out = Vec::new();
+        for card in cards {
+            let name = || card.get("NAME").unwrap_or_default().to_ascii_uppercase();
+            match card.keyword.as_str() {
+                "PART" => part = Some(name()),
+                "END PART" => part = None,
+                "END INSTANCE" => instance = (String::new(), Placement::default()),
+                "INSTANCE" => {
+                    let placed = Placement::of(card);
+                    instance = (name(), self.tolerate(placed).unwrap_or_default());
+                    let of = card.get("PART").unwrap_or_default().to_ascii_uppercase();
+                    let Some(own) = parts.get(&of) else {
+                        self.report.push(card.left_out(format!("there is no part {of}")));
+                        continue;
+                    };
+                    let (scope, placement) = &instance;
+                    out.extend(own.iter().map(|card| Statement {
+                        card: card.clone(),
+                        scope: scope.clone(),
+                        home: scope.clone(),
+                        placement: placement.clone(),
+                    }));
+                }
+                _ => match &part {
+                    Some(name) => parts.entry(name.clone()).or_default().push(card.clone()),
+                    None => {
+                        let (home, placement) = instance.clone();
+                        let scope = card.get("INSTANCE").map_or_else(|| home.clone(), str::to_ascii_uppercase);
+                        out.push(Statement { card: card.clone(), scope, home, placement });
+                    }
+                },
+            }
+        }
+        out
     }
 
-    fn card(&mut self, card: &Card, scope: &str, placement: &Placement) -> Result<()> {
+    /// The value, or a warning in place of the error.
+    pub(super) fn tolerate<T>(&mut self, result: Result<T>) -> Option<T> {
+        match result {
+            Ok(value) => return Some(value),
+            Err(Error::Input(problems)) => {
+                for problem in problems {
+                    let fact = format!("{}: this is left out", problem.fact);
+                    let severity = Severity::Warning;
+                    self.report.push(Diagnostic { severity, code: "not-taken-over", fact, ..problem });
+                }
+            }
+            Err(other) => self.report.push(Diagnostic::warning("not-taken-over", other.to_string())),
+        }
+        None
+    }
+
+    /// Reads each line of a card; lines that cannot be read are named.
+    pub(super) fn each_row(&mut self, card: &Card, read: &mut dyn FnMut(&mut Self, &Row) -> Result<()>) {
+        card.is_read.set(true);
+        let mut wrong = 0;
+        for row in &card.rows {
+            if let Err(error) = read(self, row) {
+                wrong += 1;
+                if wrong <= NAMED {
+                    self.tolerate::<()>(Err(error));
+                }
+            }
+        }
+        self.count_wrong(card, wrong, "line", "lines");
+    }
+
+    fn count_wrong(&mut self, card: &Card, wrong: usize, one: &str, several: &str) {
+        if wrong > NAMED {
+            let more = counted(wrong - NAMED, one, several);
+            self.report.push(card.left_out(format!("*{}: {more} more cannot be read", card.keyword)));
+        }
+    }
+
+    fn of_mesh(&mut self, statement: &Statement) -> Result<()> {
+        let Statement { card, scope, home, placement } = statement;
         match card.keyword.as_str() {
             "NODE" => self.add_nodes(card, scope, placement),
-            "ELEMENT" => self.add_elements(card, scope),
+            "ELEMENT" => self.add_elements(card, scope)?,
             "NSET" => {
-                let found = self.listed(card, scope, true)?;
-                self.add_to_set(card.require("NSET")?, scope, found, true);
-                Ok(())
+                let name = card.require("NSET")?;
+                let mut found = Vec::new();
+                if let Some(elements) = card.get("ELSET") {
+                    let cells = self.found(card, elements, 0, scope, Kind::Elements)?;
+                    found.extend(cells.iter().flat_map(|&cell| self.mesh.cells.nodes(cell as usize)).copied());
+                }
+                found.extend(self.listed(card, scope, Kind::Nodes));
+                self.sets.set_mut(Kind::Nodes, home, name).nodes.extend(found);
             }
             "ELSET" => {
-                let found = self.listed(card, scope, false)?;
-                self.add_to_set(card.require("ELSET")?, scope, found, false);
-                Ok(())
+                let name = card.require("ELSET")?;
+                let found = self.listed(card, scope, Kind::Elements);
+                self.sets.set_mut(Kind::Elements, home, name).cells.extend(found);
             }
-            "SURFACE" => self.add_surface(card, scope),
-            "SOLID SECTION" => self.section(card, scope),
-            "MATERIAL" => {
-                let name = word(card.require("NAME")?);
-                self.mesh.materials.push(Material { name, young: None, poisson: 0.0, density: 0.0 });
-                self.material = Some(self.mesh.materials.len() - 1);
-                Ok(())
-            }
-            "ELASTIC" | "DENSITY" => self.of_material(card),
-            "STEP" => {
-                self.step += 1;
-                if card.get("NLGEOM").is_some_and(|given| !given.eq_ignore_ascii_case("no")) {
-                    let fact = "NLGEOM is not taken over: elements are those of small displacements";
-                    let remedy = "write TotalLagrangianElement as \"element_name\" (--element-name)";
-                    self.report.push(Diagnostic::warning("not-taken-over", fact).at(card.place()).remedy(remedy));
-                }
-                Ok(())
-            }
-            _ => {
-                let is_read = self.interaction(card, scope)? || WITHOUT_MESH.contains(&card.keyword.as_str());
-                if !is_read {
-                    *self.unread.entry(card.keyword.clone()).or_default() += 1;
-                }
-                Ok(())
-            }
-        }
-    }
-
-    fn add_nodes(&mut self, card: &Card, scope: &str, placement: &Placement) -> Result<()> {
-        let mut added = Vec::new();
-        for line in &card.lines {
-            let label = card.label(line.first().map_or("", String::as_str))?;
-            let mut point = [0.0; 3];
-            for (to, field) in point.iter_mut().zip(line.iter().skip(1).filter(|field| !field.is_empty())) {
-                *to = card.number(field)?;
-            }
-            let at = self.mesh.points.len() as u32;
-            if self.nodes.insert((scope.to_owned(), label), at).is_some() {
-                return Err(card.wrong(format!("node {label} stands there twice")));
-            }
-            self.mesh.points.push(placement.place(point));
-            self.mesh.node_ids.push(label);
-            added.push(at);
-        }
-        if let Some(set) = card.get("NSET") {
-            self.add_to_set(set, scope, added, true);
+            _ => {}
         }
         Ok(())
+    }
+
+    fn add_nodes(&mut self, card: &Card, scope: &str, placement: &Placement) {
+        let mut added = Vec::new();
+        self.each_row(card, &mut |model, row| {
+            let label = card.label(row.get(0), row.line)?;
+            let mut point = [0.0; 3];
+            for (to, field) in point.iter_mut().zip(row.fields.iter().skip(1).filter(|field| !field.is_empty())) {
+                *to = card.number(field, row.line)?;
+            }
+            let at = model.mesh.points.len() as u32;
+            if let Some(&known) = model.nodes.get(&(scope.to_owned(), label)) {
+                model.mesh.points[known as usize] = placement.place(point);
+                added.push(known);
+                return Err(card.wrong_at(row.line, format!("node {label} stands there twice: its earlier position")));
+            }
+            model.nodes.insert((scope.to_owned(), label), at);
+            model.mesh.points.push(placement.place(point));
+            model.mesh.node_ids.push(label);
+            added.push(at);
+            Ok(())
+        });
+        if let Some(set) = card.get("NSET") {
+            self.sets.set_mut(Kind::Nodes, scope, set).nodes.extend(added);
+        }
     }
 
     fn add_elements(&mut self, card: &Card, scope: &str) -> Result<()> {
         let kind = card.require("TYPE")?;
+        card.is_read.set(true);
         let Some((shape, plane)) = abaqus_cells::of(kind) else {
+            let labels = card.rows.iter().filter_map(|row| row.get(0).parse().ok());
+            self.omitted.extend(labels.map(|label: u32| (scope.to_owned(), label)));
             let known = "C3D4, C3D6, C3D8, C3D10, C3D15, C3D20, CPS…, CPE… and CAX… are known, whatever letters follow";
-            return Err(Diagnostic::error("mesh-syntax", format!("elements of type {kind} are not known"))
-                .at(card.place())
-                .remedy(known)
-                .into());
+            let fact = format!("elements of type {kind} are not known and are left out");
+            self.report.push(card.left_out(fact).remedy(known));
+            return Ok(());
         };
+        let capitals = kind.to_ascii_uppercase();
         if abaqus_cells::is_structural(kind) {
-            *self.structural.entry(kind.to_ascii_uppercase()).or_default() += 1;
+            self.structural.entry(capitals.clone()).or_insert_with(|| card.place());
         }
-        if let Some(left_out) = abaqus_cells::left_out(kind, shape) {
-            self.simpler.insert(kind.to_ascii_uppercase(), left_out);
+        if let Some((feature, remedy)) = abaqus_cells::left_out(kind, shape) {
+            self.simpler.entry(capitals).or_insert_with(|| (feature, remedy, card.place()));
         }
         self.mesh.plane = self.mesh.plane.or(plane);
-        let fields: Vec<&str> = card.fields().collect();
+        let fields: Vec<(&str, u32)> = card.fields().collect();
         let mut added = Vec::new();
+        let mut wrong = 0;
         for row in fields.chunks(shape.nodes() + 1) {
-            let label = card.label(row[0])?;
-            if row.len() <= shape.nodes() {
-                return Err(card.wrong(format!("element {label} has too few nodes for {kind}")));
+            match self.element(card, scope, kind, row) {
+                Ok(cell) => added.push(cell),
+                Err(error) => {
+                    if let Ok(label) = row[0].0.parse() {
+                        self.omitted.insert((scope.to_owned(), label));
+                    }
+                    wrong += 1;
+                    if wrong <= NAMED {
+                        self.tolerate::<()>(Err(error));
+                    }
+                }
             }
-            let mut nodes = vec![0; shape.nodes()];
-            for (&place, field) in abaqus_cells::order(shape).iter().zip(&row[1..]) {
-                let node = (scope.to_owned(), card.label(field)?);
-                let found = self.nodes.get(&node);
-                nodes[place] = *found
-                    .ok_or_else(|| card.wrong(format!("element {label} has node {}, which is not there", node.1)))?;
-            }
-            let cell = self.mesh.cells.push(label, shape, nodes);
-            if self.elements.insert((scope.to_owned(), label), cell).is_some() {
-                return Err(card.wrong(format!("element {label} stands there twice")));
-            }
-            added.push(cell);
         }
+        self.count_wrong(card, wrong, "element", "elements");
         if let Some(set) = card.get("ELSET") {
-            self.add_to_set(set, scope, added, false);
+            self.sets.set_mut(Kind::Elements, scope, set).cells.extend(added);
         }
         Ok(())
     }
 
-    fn add_to_set(&mut self, name: &str, scope: &str, found: Vec<u32>, of_nodes: bool) {
-        // A set of the assembly that lists an instance's is one of the assembly.
-        let sets = if of_nodes { &mut self.node_sets } else { &mut self.element_sets };
-        let set = sets.entry((scope.to_owned(), name.to_ascii_uppercase())).or_default();
-        set.extend(found);
-        let group = self.mesh.group_mut(&group_name(scope, name));
-        let list = if of_nodes { &mut group.nodes } else { &mut group.cells };
-        list.extend(set.iter());
-        list.sort_unstable();
-        list.dedup();
+    /// Adds an element by its label and nodes.
+    fn element(&mut self, card: &Card, scope: &str, kind: &str, row: &[(&str, u32)]) -> Result<u32> {
+        let (shape, _) = abaqus_cells::of(kind).ok_or_else(|| card.wrong("it has no shape"))?;
+        let (field, line) = row[0];
+        let label = card.label(field, line)?;
+        if row.len() <= shape.nodes() {
+            return Err(card.wrong_at(line, format!("element {label} has too few nodes for {kind}")));
+        }
+        let mut nodes = vec![0; shape.nodes()];
+        for (&place, &(field, line)) in abaqus_cells::order(shape).iter().zip(&row[1..]) {
+            let node = card.label(field, line)?;
+            let found = self.nodes.get(&(scope.to_owned(), node));
+            let missing = || card.wrong_at(line, format!("element {label} has node {node}, which is not there"));
+            nodes[place] = *found.ok_or_else(missing)?;
+        }
+        if self.elements.contains_key(&(scope.to_owned(), label)) {
+            return Err(card.wrong_at(line, format!("element {label} stands there twice: the second one")));
+        }
+        let cell = self.mesh.cells.push(label, shape, nodes);
+        self.elements.insert((scope.to_owned(), label), cell);
+        Ok(cell)
     }
 
-    fn listed(&self, card: &Card, scope: &str, of_nodes: bool) -> Result<Vec<u32>> {
+    /// The members that a card lists.
+    fn listed(&mut self, card: &Card, scope: &str, kind: Kind) -> Vec<u32> {
         let mut out = Vec::new();
-        if card.get("GENERATE").is_some() {
-            for line in &card.lines {
-                let mut numbers = line.iter().filter(|field| !field.is_empty()).map(|field| card.label(field));
-                let first = numbers.next().unwrap_or_else(|| Err(card.wrong("a range has no beginning")))?;
+        let is_range = card.get("GENERATE").is_some();
+        self.each_row(card, &mut |model, row| {
+            if is_range {
+                let mut numbers =
+                    row.fields.iter().filter(|field| !field.is_empty()).map(|field| card.label(field, row.line));
+                let first =
+                    numbers.next().unwrap_or_else(|| Err(card.wrong_at(row.line, "a range has no beginning")))?;
                 let last = numbers.next().unwrap_or(Ok(first))?;
                 let by = numbers.next().unwrap_or(Ok(1))?.max(1);
                 // a range may contain labels that do not exist
-                let labels = if of_nodes { &self.nodes } else { &self.elements };
+                let labels = if kind == Kind::Nodes { &model.nodes } else { &model.elements };
                 let range = (first..=last).step_by(by as usize);
                 out.extend(range.filter_map(|label| labels.get(&(scope.to_owned(), label)).copied()));
+                return Ok(());
             }
-            return Ok(out);
-        }
-        for field in card.fields() {
-            out.extend(self.found(card, field, scope, of_nodes)?);
-        }
-        Ok(out)
+            let mut missing = None;
+            for field in row.fields.iter().filter(|field| !field.is_empty()) {
+                match model.found(card, field, row.line, scope, kind) {
+                    Ok(found) => out.extend(found),
+                    Err(error) => missing = missing.or(Some(error)),
+                }
+            }
+            missing.map_or(Ok(()), Err)
+        });
+        out
     }
 
     /// The nodes or elements of a label or set, which may stand behind the name of an instance and a dot.
-    pub(super) fn found(&self, card: &Card, field: &str, scope: &str, of_nodes: bool) -> Result<Vec<u32>> {
-        let name = field.trim_matches('"').to_ascii_uppercase();
-        let (scope, name) = name
-            .split_once('.')
-            .map_or((scope.to_owned(), name.clone()), |(instance, own)| (instance.to_owned(), own.to_owned()));
-        let (labels, sets) =
-            if of_nodes { (&self.nodes, &self.node_sets) } else { (&self.elements, &self.element_sets) };
-        let of_label = name.parse().ok().and_then(|label| labels.get(&(scope.clone(), label)));
-        if let Some(&found) = of_label {
-            return Ok(vec![found]);
+    pub(super) fn found(&self, card: &Card, field: &str, line: u32, scope: &str, kind: Kind) -> Result<Vec<u32>> {
+        let name = field.trim_matches('"');
+        if let Some(found) = self.label(name, scope, kind) {
+            return Ok(found.into_iter().collect());
         }
-        let found = sets.get(&(scope, name.clone())).or_else(|| sets.get(&(String::new(), name)));
-        let what = if of_nodes { "node or set of nodes" } else { "element or set of elements" };
-        found.cloned().ok_or_else(|| card.wrong(format!("*{}: there is no {what} {field}", card.keyword)))
+        if let Some(set) = self.sets.find(kind, scope, name) {
+            return Ok(if kind == Kind::Nodes { set.nodes.clone() } else { set.cells.clone() });
+        }
+        let what = if kind == Kind::Nodes { "node or set of nodes" } else { "element or set of elements" };
+        let line_of_card = card.place().line;
+        Err(card.wrong_at(if line == 0 { line_of_card } else { line }, format!("there is no {what} {field}")))
     }
 
-    fn section(&mut self, card: &Card, scope: &str) -> Result<()> {
-        let group = group_name(scope, card.require("ELSET")?);
-        self.mesh.sections.push(Section { group, material: word(card.require("MATERIAL")?) });
-        let thickness = card.fields().next().map_or(Ok(1.0), |field| card.number(field))?;
-        if thickness != 1.0 && thickness > 0.0 {
-            let fact = format!("the thickness {thickness} of a section is not taken over: plane elements have 1");
-            let remedy = "write THICKNESS among the \"Variables\" of its material";
-            self.report.push(Diagnostic::warning("not-taken-over", fact).at(card.place()).remedy(remedy));
-        }
-        Ok(())
-    }
-
-    fn of_material(&mut self, card: &Card) -> Result<()> {
-        let Some(material) = self.material.map(|at| &mut self.mesh.materials[at]) else {
-            return Err(card.wrong(format!("*{} stands below no *MATERIAL", card.keyword)));
+    /// The node or element of a label, `None` where the name is no label; an element that is left out is none of both.
+    fn label(&self, name: &str, scope: &str, kind: Kind) -> Option<Option<u32>> {
+        let (scope, label) = match name.split_once('.') {
+            Some((instance, own)) => (instance.to_ascii_uppercase(), own.parse().ok()?),
+            None => (scope.to_owned(), name.parse().ok()?),
         };
-        let numbers = card.fields().take(2).map(|field| card.number(field)).collect::<Result<Vec<f64>>>()?;
-        match (card.keyword.as_str(), &numbers[..]) {
-            ("ELASTIC", &[young, poisson])
-                if card.get("TYPE").is_none_or(|kind| kind.to_ascii_uppercase().starts_with("ISO")) =>
-            {
-                (material.young, material.poisson) = (Some(young), poisson);
-            }
-            ("ELASTIC", _) => {
-                let fact = format!("material {} is not isotropic: its elasticity is not taken over", material.name);
-                self.report.push(Diagnostic::warning("not-taken-over", fact).at(card.place()));
-            }
-            (_, numbers) => material.density = numbers.first().copied().unwrap_or(0.0),
-        }
-        Ok(())
+        let labels = if kind == Kind::Nodes { &self.nodes } else { &self.elements };
+        let key = (scope, label);
+        labels.get(&key).map(|&found| Some(found)).or_else(|| self.omitted.contains(&key).then_some(None))
     }
 
-    fn finish(mut self, path: &Path) -> Result<(Mesh, Vec<Diagnostic>)> {
-        self.make_surfaces()?;
-        self.make_interactions()?;
-        let place = Place::file(path);
-        for (list, fact, remedy) in [
-            (&self.unread, "keywords of the file are not read", "state what they mean in the deck"),
-            (
-                &self.structural,
-                "elements of these types come in as cells without stiffness",
-                "mesh the bodies with solid elements",
-            ),
-        ] {
-            let names: Vec<&str> = list.keys().map(String::as_str).collect();
-            if !names.is_empty() {
-                let problem = Diagnostic::warning("not-taken-over", format!("{fact}: {}", names.join(", ")));
-                self.report.push(problem.at(place.clone()).remedy(remedy));
-            }
+    /// The node of a field that is a label, not a set.
+    pub(super) fn single_node(&self, field: &str, scope: &str) -> Option<u32> {
+        self.label(field.trim_matches('"'), scope, Kind::Nodes).flatten()
+    }
+
+    fn finish(mut self) -> Result<(Mesh, Vec<Diagnostic>)> {
+        for (name, place) in &self.structural {
+            let fact = format!("elements of type {name} come in as cells without stiffness");
+            let problem = Diagnostic::warning("not-taken-over", fact);
+            self.report.push(problem.at(place.clone()).remedy("mesh the bodies with solid elements"));
         }
-        for (name, (what, remedy)) in &self.simpler {
+        for (name, (what, remedy, place)) in &self.simpler {
             let problem = Diagnostic::warning("not-taken-over", format!("elements {name} have {what}"));
             self.report.push(problem.at(place.clone()).remedy(*remedy));
         }
@@ -333,15 +354,4 @@ fn renumber(ids: &mut [u32]) {
     if sorted.windows(2).any(|two| two[0] == two[1]) {
         ids.iter_mut().zip(1..).for_each(|(id, new)| *id = new);
     }
-}
-
-/// The name of the group of a set or surface.
-pub(super) fn group_name(scope: &str, name: &str) -> String {
-    // the name of an instance is in capitals, however it is written
-    let name = match name.split_once('.') {
-        Some((instance, own)) => format!("{}_{own}", instance.to_ascii_uppercase()),
-        None if scope.is_empty() => name.to_owned(),
-        None => format!("{scope}_{name}"),
-    };
-    word(&name)
 }

@@ -1,30 +1,58 @@
 //! The text of a starter deck.
 
-use zelus_meshes::mesh::{LoadKind, Mesh, Pair, Plane, Support};
+use zelus_meshes::conditions::Support;
+use zelus_meshes::mesh::{Mesh, Pair};
+
+use super::histories::Histories;
+use super::point_loads::ForceFile;
+use super::{processes, stepping};
 
 /// `ProjectParameters.json` with comments on the decisions to take.
-pub(super) fn text(mesh: &Mesh, stem: &str, space: usize, supports: &[Support]) -> String {
+pub(super) fn text(
+    mesh: &Mesh,
+    stem: &str,
+    space: usize,
+    supports: &[Support],
+    forces: Option<&ForceFile>,
+    texts: &mut Histories,
+) -> String {
     let contact: Vec<&Pair> = mesh.pairs.iter().filter(|pair| !pair.tied).collect();
     let tied: Vec<&Pair> = mesh.pairs.iter().filter(|pair| pair.tied).collect();
     let friction = contact.iter().any(|pair| pair.friction > 0.0);
-    let kind = if friction { "Frictional" } else { "Frictionless" };
-    let settings = if contact.is_empty() {
-        String::new()
-    } else {
-        format!("\n    \"contact_settings\": {{\"mortar_type\": \"ALMContact{kind}\"}},")
+    // ties have vectors as multipliers: so must contact beside them
+    let kind = match (friction, tied.is_empty()) {
+        (true, _) => "Frictional",
+        (false, true) => "Frictionless",
+        (false, false) => "FrictionlessComponents",
+    };
+    let adjusted = if contact.iter().any(|pair| pair.adjusted) { ", \"adjust_initial\": true" } else { "" };
+    let settings = match (contact.is_empty(), tied.is_empty()) {
+        (true, true) => String::new(),
+        (true, false) => "\n    \"contact_settings\": {\"mortar_type\": \"ComponentsMeshTying\"},".to_owned(),
+        (false, _) => format!("\n    \"contact_settings\": {{\"mortar_type\": \"ALMContact{kind}\"{adjusted}}},"),
     };
     let criterion = if contact.is_empty() { "residual_criterion" } else { "contact_residual_criterion" };
-    let step = if contact.is_empty() { 1.0 } else { 0.25 };
+    let temperature = if mesh.temperatures.is_empty() {
+        ""
+    } else {
+        "\n    \"auxiliary_variables_list\": [\"TEMPERATURE\"], // prescribed below; it expands the bodies"
+    };
     let parts: Vec<&str> = mesh.groups.iter().map(|group| group.name.as_str()).collect();
-    let mut lists = vec![
-        list("constraints_process_list", supports.iter().map(|support| support_text(support, space)).collect()),
-        list("loads_process_list", loads(mesh, space)),
-    ];
-    lists.extend(
-        (!contact.is_empty())
-            .then(|| list("contact_process_list", vec![contact_text(&contact, kind, friction, mesh.plane)])),
-    );
-    lists.extend((!tied.is_empty()).then(|| list("tying_process_list", vec![tie_text(&tied)])));
+    let mut loads: Vec<String> = mesh.loads.iter().map(|load| processes::load(load, space, texts)).collect();
+    loads.extend(forces.map(|file| processes::forces_of_file(&file.group, &file.name, space)).unwrap_or_default());
+    let held = supports.iter().flat_map(|support| processes::support(support, space, texts)).collect();
+    let mut lists = vec![list("constraints_process_list", held), list("loads_process_list", loads)];
+    let mut add = |name: &str, items: Vec<String>| lists.extend((!items.is_empty()).then(|| list(name, items)));
+    add("couplings_process_list", mesh.couplings.iter().map(|own| processes::coupling(own, supports)).collect());
+    add("bolts_process_list", mesh.bolts.iter().filter_map(|bolt| processes::bolt(bolt, texts)).collect());
+    add("axes_process_list", mesh.material_axes.iter().map(processes::material_axes).collect());
+    add("temperatures_process_list", mesh.temperatures.iter().map(|own| processes::temperature(own, texts)).collect());
+    if !contact.is_empty() {
+        add("contact_process_list", vec![processes::contact(&contact, kind, friction, mesh.plane)]);
+    }
+    if !tied.is_empty() {
+        add("tying_process_list", vec![processes::tie(&tied)]);
+    }
     format!(
         r#"// A deck to start from. Go through supports, loads and materials, then: zelus check, zelus run.
 // Parts of the mesh: {}.
@@ -34,7 +62,7 @@ pub(super) fn text(mesh: &Mesh, stem: &str, space: usize, supports: &[Support]) 
     "parallel_type": "OpenMP",
     "echo_level": 1,
     "start_time": 0.0,
-    "end_time": 1.0 // time is the load factor: a load "1.0*t" ramps to its full value at t = 1
+    "end_time": {:?} // time is the load factor: a load "1.0*t" ramps to its full value at t = 1
   }},
   "solver_settings": {{
     "solver_type": "Static", // "Dynamic" with inertia; `zelus describe Dynamic`
@@ -43,8 +71,8 @@ pub(super) fn text(mesh: &Mesh, stem: &str, space: usize, supports: &[Support]) 
     "echo_level": 1,
     "analysis_type": "non_linear",
     "model_import_settings": {{"input_type": "mdpa", "input_filename": "{stem}"}},
-    "material_import_settings": {{"materials_filename": "StructuralMaterials.json"}},{settings}
-    "time_stepping": {{"time_step": {step:?}}}, // steps that do not converge are cut by themselves
+    "material_import_settings": {{"materials_filename": "StructuralMaterials.json"}},{settings}{temperature}
+    "time_stepping": {}, // steps that do not converge are cut by themselves
     "convergence_criterion": "{criterion}"
   }},
   "processes": {{
@@ -65,6 +93,8 @@ pub(super) fn text(mesh: &Mesh, stem: &str, space: usize, supports: &[Support]) 
 }}
 "#,
         if parts.is_empty() { "none but Structure, the whole".to_owned() } else { parts.join(", ") },
+        stepping::end(mesh),
+        stepping::text(mesh),
         lists.join(",\n")
     )
 }
@@ -77,128 +107,4 @@ fn list(name: &str, items: Vec<String>) -> String {
         );
     }
     format!("    \"{name}\": [\n{}\n    ]", items.join(",\n"))
-}
-
-fn process(module: &str, application: &str, parameters: &str) -> String {
-    format!(
-        r#"      {{
-        "python_module": "{module}",
-        "kratos_module": "{application}",
-        "Parameters": {{
-{parameters}
-        }}
-      }}"#
-    )
-}
-
-const CORE: &str = "KratosMultiphysics";
-const CONTACT: &str = "KratosMultiphysics.ContactStructuralMechanicsApplication";
-
-fn support_text(support: &Support, space: usize) -> String {
-    // a planar model has no third displacement to hold
-    let values = support.values.iter().enumerate().map(|(at, value)| value.filter(|_| at < space));
-    let values: Vec<Option<f64>> = values.collect();
-    let held: Vec<String> = values.iter().map(|value| value.is_some().to_string()).collect();
-    let number = |value: &Option<f64>| match value {
-        None => "null".to_owned(),
-        Some(0.0) => "0.0".to_owned(),
-        Some(value) => format!("\"{value:?}*t\""),
-    };
-    let values: Vec<String> = values.iter().map(number).collect();
-    process(
-        "assign_vector_variable_process",
-        CORE,
-        &format!(
-            r#"          "model_part_name": "Structure.{}",
-          "variable_name": "DISPLACEMENT",
-          "constrained": [{}], // directions that are held
-          "value": [{}]"#,
-            support.group,
-            held.join(", "),
-            values.join(", ")
-        ),
-    )
-}
-
-fn loads(mesh: &Mesh, space: usize) -> Vec<String> {
-    let surface = if space == 3 { "SURFACE_LOAD" } else { "LINE_LOAD" };
-    let by_direction = |group: &str, variable: &str, modulus: f64, direction: &str| {
-        process(
-            "assign_vector_by_direction_to_condition_process",
-            CORE,
-            &format!(
-                r#"          "model_part_name": "Structure.{group}",
-          "variable_name": "{variable}",
-          "modulus": "{modulus:?}*t",
-          "direction": {direction}"#
-            ),
-        )
-    };
-    let all =
-        mesh.loads.iter().filter(|load| !(mesh.plane == Some(Plane::Axial) && matches!(load.kind, LoadKind::Force(_))));
-    all.map(|load| match load.kind {
-        LoadKind::Pressure(value) => by_direction(&load.group, surface, value, "\"automatic_inwards_normal\""),
-        LoadKind::Force(force) => {
-            let size = force.iter().map(|x| x * x).sum::<f64>().sqrt();
-            by_direction(&load.group, "POINT_LOAD", size, &format!("{:?}", force.map(|x| x / size)))
-        }
-    })
-    .collect()
-}
-
-/// `{"0": ["Part"], "1": […]}` with `name` of each pair.
-fn by_pair(pairs: &[&Pair], name: impl Fn(&Pair) -> String) -> String {
-    let items: Vec<String> = pairs.iter().enumerate().map(|(at, pair)| format!("\"{at}\": {}", name(pair))).collect();
-    format!("{{{}}}", items.join(", "))
-}
-
-fn surfaces(pair: &Pair) -> String {
-    if pair.slave == pair.master {
-        format!("[\"{}\"]", pair.slave)
-    } else {
-        format!("[\"{}\", \"{}\"]", pair.slave, pair.master)
-    }
-}
-
-fn slaves(pair: &Pair) -> String {
-    if pair.slave == pair.master { "[]".to_owned() } else { format!("[\"{}\"]", pair.slave) }
-}
-
-fn contact_text(pairs: &[&Pair], kind: &str, friction: bool, plane: Option<Plane>) -> String {
-    let coefficients = if friction {
-        format!(",\n          \"friction_coefficients\": {}", by_pair(pairs, |pair| format!("{:?}", pair.friction)))
-    } else {
-        String::new()
-    };
-    let about = match plane {
-        Some(Plane::Axial) => ",\n          \"alternative_formulations\": {\"axisymmetric\": true}",
-        _ => "",
-    };
-    process(
-        "alm_contact_process",
-        CONTACT,
-        &format!(
-            r#"          "model_part_name": "Structure",
-          "contact_type": "{kind}",
-          "contact_model_part": {},
-          // slaves: the finer side, of like meshes the softer
-          "assume_master_slave": {}{coefficients}{about}"#,
-            by_pair(pairs, surfaces),
-            by_pair(pairs, slaves),
-        ),
-    )
-}
-
-fn tie_text(pairs: &[&Pair]) -> String {
-    process(
-        "mesh_tying_process",
-        CONTACT,
-        &format!(
-            r#"          "model_part_name": "Structure",
-          "mesh_tying_model_part": {},
-          "assume_master_slave": {}"#,
-            by_pair(pairs, surfaces),
-            by_pair(pairs, slaves),
-        ),
-    )
 }
