@@ -41,6 +41,7 @@ def by_ccx(text, folder):
     text = re.sub(r"^\*STEP", nset + "*STEP", text, count=1, flags=re.I | re.M)
     text = re.sub(r"^\*END STEP", "*NODE PRINT,NSET=COMPARED\nU\n*END STEP", text, flags=re.I | re.M)
     (folder / "job.inp").write_text(text)
+    (folder / "job.dat").unlink(missing_ok=True)
     environment = {**os.environ, "OMP_NUM_THREADS": "1"}
     run = subprocess.run(["ccx", "job"], cwd=folder, env=environment, capture_output=True, text=True, timeout=300)
     found = {}

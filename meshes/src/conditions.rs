@@ -69,6 +69,15 @@ pub enum LoadKind {
     Traction([History; 3]),
     /// Acceleration of the bodies, as by gravity.
     Acceleration([History; 3]),
+    /// Acceleration away from an axis, per distance.
+    Centrifugal {
+        /// Square of the angular velocity.
+        square: History,
+        /// A point of the axis.
+        origin: [f64; 3],
+        /// Its direction, of length 1.
+        axis: [f64; 3],
+    },
 }
 
 /// A linear relation between displacements of nodes: Σ factor · displacement = 0, whose first one follows the others.

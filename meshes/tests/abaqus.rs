@@ -213,3 +213,41 @@ fn pressures_on_faces_of_elements_become_a_part() {
     assert!((mapping::domain_size(mesh.cells.shapes[cell], &mesh.points_of(cell)) - 2.0_f64.sqrt()).abs() < 1e-12);
     assert_eq!(mesh.supports[0].group, "Node_1");
 }
+
+/// CalculiX reads keywords and parameters with blanks and without.
+#[test]
+fn blanks_in_keywords_do_not_matter() {
+    let text = format!(
+        "{TRIANGLE}*NODE\n9,0,0\n*MATERIAL,NAME=M\n*ELASTIC\n1000.,0.3\n*SOLIDSECTION,ELSET=E,MATERIAL=M\n0.5\n*NSET,NSET=N\n1,2,3\n\
+         *RIGIDBODY,NSET=N,REFNODE=9\n*STEP\n*STATIC\n*NODEPRINT,NSET=N\nU\n*ENDSTEP\n"
+    );
+    let (mesh, said) = of_text(&text).unwrap();
+    assert!(!said.contains("warning"), "{said}");
+    assert_eq!((mesh.sections[0].thickness, mesh.couplings.len()), (0.5, 1));
+}
+
+/// A later set changes the temperature of nodes that an earlier one has, too.
+#[test]
+fn temperatures_are_those_of_the_last_card_of_a_node() {
+    let text = format!(
+        "{TRIANGLE}*NSET,NSET=ALL\n1,2,3\n*NSET,NSET=ONE\n1\n*INITIAL CONDITIONS,TYPE=TEMPERATURE\nALL,20.\n\
+         *MATERIAL,NAME=M\n*EXPANSION\n1e-5\n*STEP\n*STATIC\n*TEMPERATURE\nONE,70.\n*END STEP\n"
+    );
+    let (mesh, said) = of_text(&text).unwrap();
+    assert_eq!(said, "");
+    let of = |node: u32| {
+        let own = mesh.temperatures.iter().find(|own| mesh.group(&own.group).unwrap().nodes.contains(&node));
+        [0.0, 0.5, 1.0].map(|time| own.unwrap().value.at(time))
+    };
+    assert_eq!([of(0), of(1)], [[20.0, 45.0, 70.0], [20.0; 3]]);
+    assert_eq!(mesh.materials[0].expansion.as_ref().unwrap().reference, 20.0);
+}
+
+#[test]
+fn elements_with_more_nodes_than_their_type_and_of_two_plane_states_are_named() {
+    let text = format!("{TRIANGLE}*NODE\n4,1,1\n*ELEMENT,TYPE=CPE3\n8,2,4,3,1,1\n");
+    let (mesh, said) = of_text(&text).unwrap();
+    assert_says(&said, 9, "1 element has more nodes than CPE3");
+    assert_says(&said, 9, "elements of type CPE3 assume another plane state");
+    assert_eq!(mesh.cells.nodes(1), [1, 3, 2]);
+}

@@ -7,6 +7,7 @@ mod point_loads;
 mod processes;
 mod stepping;
 mod supports;
+mod thickness;
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

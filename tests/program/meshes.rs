@@ -331,3 +331,159 @@ fn amplitudes_and_steps_of_abaqus_give_histories() {
         assert!((along(&simulation) - shear).abs() < 1e-9, "{steps}: {}", along(&simulation));
     }
 }
+
+/// A block of 2³ elements of length 1 along z, held below, with stiffness 1000 and no contraction, and these cards.
+fn block_of_abaqus(material: &str, section: &str, cards: &str) -> String {
+    format!(
+        "{}*NSET, NSET=LOW, GENERATE\n1, 9\n*NSET, NSET=TOP, GENERATE\n19, 27\n*NSET, NSET=ALL, GENERATE\n1, 27\n\
+         *SURFACE, NAME=FACE, TYPE=NODE\nTOP\n*MATERIAL, NAME=M\n{material}*SOLID SECTION, ELSET=A, MATERIAL=M{section}\n{cards}",
+        box_of_abaqus(1, 0.0, 2, "A")
+    )
+}
+
+const PLAIN: &str = "*ELASTIC\n1000., 0.\n";
+
+fn displacement(simulation: &Simulation, point: [f64; 3]) -> [f64; 3] {
+    let nodes = &simulation.model().parts["Structure"].nodes.initial;
+    let at = nodes.iter().position(|own| own.iter().zip(point).all(|(a, b)| (a - b).abs() < 1e-9)).unwrap();
+    let all = simulation.field("DISPLACEMENT").unwrap();
+    [0, 1, 2].map(|i| all[3 * at + i])
+}
+
+/// Loads at reference nodes: the face moves by F l / (E A) = 0.02 as a whole, and by a rotation that is prescribed.
+#[test]
+fn couplings_of_abaqus_pass_loads_and_motions() {
+    let below = "*BOUNDARY\nLOW, 1, 3\n*NODE, NSET=REF\n100, 0.5, 0.5, 1.\n101, 0.5, 0.5, 1.\n";
+    let pulled = "*STEP\n*STATIC\n*CLOAD\n100, 3, 20.\n*END STEP\n";
+    for coupling in [
+        "*COUPLING, REF NODE=100, SURFACE=FACE, CONSTRAINT NAME=C\n*KINEMATIC\n1, 3\n",
+        "*COUPLING, REF NODE=100, SURFACE=FACE, CONSTRAINT NAME=C\n*KINEMATIC\n3, 3\n",
+        "*COUPLING, REF NODE=100, SURFACE=FACE, CONSTRAINT NAME=C\n*DISTRIBUTING\n1, 3\n",
+        "*RIGID BODY, NSET=TOP, REF NODE=100, ROT NODE=101\n",
+    ] {
+        // a small moment about each axis gives the criterion of rotations its unit
+        let steps = pulled.replace(
+            "*CLOAD\n",
+            if coupling.contains("ROT") { "*CLOAD\n101, 1, 1e-6\n" } else { "*CLOAD\n100, 4, 1e-6\n" },
+        );
+        let (_scratch, simulation, said) = of_input(&block_of_abaqus(PLAIN, "", &format!("{below}{coupling}{steps}")));
+        assert!(!said.contains("warning"), "{said}");
+        let up = displacement(&simulation, [0.5, 0.5, 1.0])[2];
+        assert!((up - 0.02).abs() < 1e-6, "{coupling}: {up}");
+    }
+    // a rotation of 0.01 about z: nodes move by the arm times it
+    let turned = "*RIGID BODY, NSET=TOP, REF NODE=100, ROT NODE=101\n*STEP\n*STATIC\n*BOUNDARY\n100, 1, 3\n101, 1, 2\n101, 3, 3, 0.01\n*END STEP\n";
+    let (_scratch, simulation, _) = of_input(&block_of_abaqus(PLAIN, "", &format!("{below}{turned}")));
+    let [x, y, z] = displacement(&simulation, [1.0, 1.0, 1.0]);
+    assert!((x + 0.005).abs() < 1e-9 && (y - 0.005).abs() < 1e-9 && z.abs() < 1e-9, "{x} {y} {z}");
+}
+
+/// Equations: the top moves as one node, which bears the whole force; a slanted roller mixes directions.
+#[test]
+fn equations_of_abaqus_relate_unknowns() {
+    let alone = "*BOUNDARY\nLOW, 1, 3\n*NSET, NSET=REST\n19,20,21,22,24,25,26,27\n*EQUATION\n2\nREST, 3, 1., 23, 3, -1.\n\
+        *STEP\n*STATIC\n*CLOAD\n23, 3, 20.\n*END STEP\n";
+    let (scratch, simulation, said) = of_input(&block_of_abaqus(PLAIN, "", alone));
+    assert!(!said.contains("warning"), "{said}");
+    for corner in [[0.0, 0.0, 1.0], [0.5, 0.5, 1.0]] {
+        assert!((displacement(&simulation, corner)[2] - 0.02).abs() < 1e-9);
+    }
+    let mesh = std::fs::read_to_string(scratch.path().join("deck/part.mdpa")).unwrap();
+    assert!(mesh.contains("Begin Constraints LinearMasterSlaveConstraint DISPLACEMENT_Z"));
+    // 3 u_x + 4 u_z = 0 at all nodes of the top, which move by u_x = 0.04: also where a second equation uses the same unknowns
+    let slanted = "*BOUNDARY\nLOW, 1, 3\n*EQUATION\n2\nTOP, 3, 4., TOP, 1, 3.\n3\n23, 2, 1., 23, 3, 1., 23, 1, 0.75\n\
+        *STEP\n*STATIC\n*BOUNDARY\nTOP, 1, 1, 0.04\n*END STEP\n";
+    let (_scratch, simulation, said) = of_input(&block_of_abaqus(PLAIN, "", slanted));
+    assert!(!said.contains("warning"), "{said}");
+    let [x, y, z] = displacement(&simulation, [0.5, 0.5, 1.0]);
+    assert!((x - 0.04).abs() < 1e-12 && (z + 0.03).abs() < 1e-12 && y.abs() < 1e-12, "{x} {y} {z}");
+}
+
+/// A column that is tightened by 50 at its middle between two fixed ends bears 50 everywhere.
+#[test]
+fn pre_tension_sections_of_abaqus_tighten() {
+    let cards = |load: &str| {
+        format!(
+            "*ELSET, ELSET=HALF\n1, 2, 4, 5\n*SURFACE, NAME=CUT\nHALF, S2\n*NODE\n100, 0., 0., 0.\n\
+             *PRE-TENSION SECTION, SURFACE=CUT, NODE=100\n0., 0., 1.\n*BOUNDARY\nLOW, 1, 3\nTOP, 1, 3\n*STEP\n*STATIC\n{load}*END STEP\n"
+        )
+    };
+    // locked at 0.05 of a length of 1: E A u / l = 50 as well
+    for load in ["*CLOAD\n100, 1, 50.\n", "*BOUNDARY\n100, 1, 1, 0.05\n"] {
+        let (_scratch, simulation, said) = of_input(&block_of_abaqus(PLAIN, "", &cards(load)));
+        assert!(!said.contains("warning"), "{said}");
+        // at the upper end alone: the reference node of the section has a reaction of its own
+        let nodes = &simulation.model().parts["Structure"].nodes.initial;
+        let reactions = simulation.field("REACTION").unwrap();
+        let above = nodes.iter().enumerate().filter(|(_, point)| point[2] > 0.99);
+        let force: f64 = above.map(|(at, _)| reactions[3 * at + 2]).sum();
+        assert!((force / 50.0 - 1.0).abs() < 1e-6, "{load}: {force}");
+    }
+}
+
+/// Orthotropic moduli along turned axes: E₂ = 2000 lies along z.
+#[test]
+fn orientations_of_abaqus_turn_the_material() {
+    let material = "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n1000., 2000., 4000., 0., 0., 0., 500., 500.,\n500., 0.\n";
+    let cards =
+        "*BOUNDARY\nLOW, 1, 3\n*STEP\n*STATIC\n*DLOAD\nA, GRAV, 0., 0., 0., 1.\n*DSLOAD\nFACE, P, -20.\n*END STEP\n";
+    for (axes, along) in
+        [("1., 0., 0., 0., 0., 1.", 2000.0), ("0., 0., 1., 0., 1., 0.", 1000.0), ("0., 1., 0., 1., 0., 0.", 4000.0)]
+    {
+        let turned = format!("*ORIENTATION, NAME=O, SYSTEM=RECTANGULAR\n{axes}\n");
+        let text = block_of_abaqus(material, ", ORIENTATION=O", cards).replace("*SOLID", &format!("{turned}*SOLID"));
+        let (_scratch, simulation, said) = of_input(&text);
+        assert!(!said.contains("warning"), "{said}");
+        let up = displacement(&simulation, [0.5, 0.5, 1.0])[2];
+        assert!((up - 20.0 / along).abs() < 1e-9, "{axes}: {up}");
+    }
+}
+
+/// A bar that is heated by 50 over its initial 20 degrees between fixed ends: E α ΔT = 1000 · 1e-4 · 50 = 5.
+#[test]
+fn temperatures_of_abaqus_expand() {
+    let cards = "*INITIAL CONDITIONS, TYPE=TEMPERATURE\nALL, 20.\n*BOUNDARY\nLOW, 1, 3\nTOP, 1, 3\n*STEP\n*STATIC\n*TEMPERATURE\nALL, 70.\n*END STEP\n";
+    let material = "*ELASTIC\n2000., 0., 20.\n1000., 0., 70.\n*EXPANSION, ZERO=20.\n1.E-4\n";
+    let (_scratch, simulation, said) = of_input(&block_of_abaqus(material, "", cards));
+    assert!(!said.contains("warning"), "{said}");
+    let force = reaction(&simulation, 2);
+    assert!((force - 5.0).abs() < 1e-9, "{force}");
+}
+
+/// A bar that is stretched to a plastic strain of 0.05 on a curve from 100 to 200 over 0.1: stress 150.
+#[test]
+fn yield_curves_of_abaqus_harden() {
+    let material = "*ELASTIC\n100000., 0.3\n*PLASTIC\n100., 0.\n200., 0.1\n";
+    let cards = "*BOUNDARY\nLOW, 3, 3\n1, 1, 2\n3, 2, 2\n*STEP\n*STATIC\n*BOUNDARY\nTOP, 3, 3, 0.0515\n*END STEP\n";
+    let (_scratch, simulation, said) = of_input(&block_of_abaqus(material, "", cards));
+    assert!(!said.contains("warning"), "{said}");
+    let force = reaction(&simulation, 2);
+    assert!((force - 150.0).abs() < 1e-4, "{force}");
+}
+
+/// A bar that turns about an end: σ = ω² ρ l² / 2 at the axis; and its weight, which adds up.
+#[test]
+fn centrifugal_loads_and_gravity_of_abaqus_add_up() {
+    let material = "*ELASTIC\n1000., 0.\n*DENSITY\n2.\n";
+    let cards = "*BOUNDARY\nLOW, 1, 3\n*STEP\n*STATIC\n*DLOAD\nA, CENTRIF, 9., 0.5, 0.5, 0., 1., 0., 0.\nA, GRAV, 10., 0., 0., -1.\n*END STEP\n";
+    let (_scratch, simulation, said) = of_input(&block_of_abaqus(material, "", cards));
+    assert!(!said.contains("warning"), "{said}");
+    let sum: f64 = simulation.field("REACTION").unwrap().iter().skip(2).step_by(3).sum();
+    assert!((sum + 9.0 * 2.0 / 2.0 - 20.0).abs() < 1e-9, "{sum}");
+}
+
+/// Two plates of thickness 0.5 and 2, pulled by 100 per area: both strain by 0.1, and the support bears 100 (0.5 + 2).
+#[test]
+fn pressures_on_plates_of_abaqus_act_on_their_thickness() {
+    let text = "*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n5,1,2\n6,0,2\n*ELEMENT,TYPE=CPS4,ELSET=THIN\n1,1,2,3,4\n\
+        *ELEMENT,TYPE=CPS4,ELSET=THICK\n2,4,3,5,6\n*NSET,NSET=LEFT\n1,4,6\n*MATERIAL,NAME=M\n*ELASTIC\n1000.,0.\n\
+        *SOLID SECTION,ELSET=THIN,MATERIAL=M\n0.5\n*SOLID SECTION,ELSET=THICK,MATERIAL=M\n2.\n*BOUNDARY\nLEFT,1\n1,2\n\
+        *STEP\n*STATIC\n*DLOAD\nTHIN,P2,-100.\nTHICK,P2,-100.\n*END STEP\n";
+    let (_scratch, simulation, said) = of_input(text);
+    assert!(!said.contains("warning"), "{said}");
+    for y in [0.0, 1.0, 2.0] {
+        assert!((displacement(&simulation, [1.0, y, 0.0])[0] - 0.1).abs() < 1e-9);
+    }
+    let sum: f64 = simulation.field("REACTION").unwrap().iter().step_by(3).sum();
+    assert!((sum + 250.0).abs() < 1e-9, "{sum}");
+}

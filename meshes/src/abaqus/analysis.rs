@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use rustc_hash::FxHashMap;
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::vector3::scale;
 
@@ -11,9 +12,9 @@ use super::model::{Model, Statement};
 use super::schedule::{Amplitude, Course, Entry, Schedule, Times};
 use super::sets::Kind;
 use crate::conditions::{Load, LoadKind, Prescribed, Support, Temperature};
-use crate::faces::FaceCells;
+use crate::faces::{FaceCells, corners, faces};
 use crate::history::History;
-use crate::mesh::Step;
+use crate::mesh::{Mesh, Step};
 
 /// Displacement components of a node; its rotations follow.
 const DIRECTIONS: usize = 3;
@@ -42,8 +43,11 @@ struct Analysis {
     pressures: Schedule<u32>,
     tractions: Schedule<(u32, usize)>,
     accelerations: Schedule<(String, usize)>,
-    temperatures: Schedule<Target>,
-    initial: BTreeMap<Target, f64>,
+    /// By group and number of the axis.
+    rotations: Schedule<(String, usize)>,
+    axes_of_rotation: Vec<([f64; 3], [f64; 3])>,
+    temperatures: Schedule<u32>,
+    initial: BTreeMap<u32, f64>,
     /// Groups that loads name.
     named: Vec<String>,
 }
@@ -63,6 +67,8 @@ impl Model {
             pressures: Schedule::new(true),
             tractions: Schedule::new(true),
             accelerations: Schedule::new(true),
+            rotations: Schedule::new(true),
+            axes_of_rotation: Vec::new(),
             temperatures: Schedule::new(false),
             initial: BTreeMap::new(),
             named: Vec::new(),
@@ -243,6 +249,7 @@ impl Model {
             all.pressures.renew(all.step);
             all.tractions.renew(all.step);
             all.accelerations.renew(all.step);
+            all.rotations.renew(all.step);
         }
         let amplitude = self.amplitude_of(card, all);
         let step = all.step;
@@ -272,6 +279,21 @@ impl Model {
                     for i in (0..DIRECTIONS).filter(|&i| along[i] != 0.0) {
                         all.accelerations.add((group.clone(), i), entry(value * along[i]));
                     }
+                }
+                "CENTRIF" if !is_of_surface => {
+                    let [x, y, z, ref along @ ..] = numbers[1..] else {
+                        return Err(card.wrong_at(row.line, "a centrifugal load has no axis"));
+                    };
+                    let along = <[f64; 3]>::try_from(along.to_vec());
+                    let axis = unit(along.map_err(|_| card.wrong_at(row.line, "an axis has no direction"))?)?;
+                    let group =
+                        if row.get(0).is_empty() { String::new() } else { model.element_group(card, row, scope)? };
+                    let known = all.axes_of_rotation.iter().position(|own| *own == ([x, y, z], axis));
+                    let at = known.unwrap_or(all.axes_of_rotation.len());
+                    if known.is_none() {
+                        all.axes_of_rotation.push(([x, y, z], axis));
+                    }
+                    all.rotations.add((group, at), entry(value));
                 }
                 "TRVEC" if is_of_surface => {
                     let along = unit(direction(1)?)?;
@@ -324,13 +346,15 @@ impl Model {
         let amplitude = self.amplitude_of(card, all);
         self.each_row(card, &mut |model, row| {
             let value = card.number(row.get(1), row.line)?;
-            for target in model.targets(card, row, scope, &SpecialNodes::default())? {
+            if let Some(set) = model.sets.find(Kind::Nodes, scope, row.get(0)) {
+                all.named.push(set.group.clone());
+            }
+            for node in model.found(card, row.get(0), row.line, scope, Kind::Nodes)? {
                 if is_initial {
-                    all.initial.insert(target.clone(), value);
+                    all.initial.insert(node, value);
                 }
                 let step = if is_initial { 0 } else { all.step };
-                let entry = Entry { step, amplitude: amplitude.clone(), value, is_rate: false };
-                all.temperatures.add(target, entry);
+                all.temperatures.add(node, Entry { step, amplitude: amplitude.clone(), value, is_rate: false });
             }
             Ok(())
         });
@@ -490,10 +514,27 @@ impl Model {
         name
     }
 
+    /// Thickness of the planar body of each loaded face; bodies of different thickness need loads of their own per length.
+    fn thickness_of_faces(&self) -> impl Fn(&Mesh, u32) -> f64 + use<> {
+        let is_even = self.mesh.dimension() == 3 || self.mesh.sections.iter().all(|own| own.thickness == 1.0);
+        let owners = if is_even { FxHashMap::default() } else { faces(&self.mesh) };
+        let mut of_element: FxHashMap<u32, f64> = FxHashMap::default();
+        for section in self.mesh.sections.iter().filter(|_| !is_even) {
+            let cells = self.mesh.group(&section.group).map(|group| group.cells.as_slice()).unwrap_or_default();
+            of_element.extend(cells.iter().map(|&cell| (cell, section.thickness)));
+        }
+        move |mesh, cell| {
+            let key = corners(mesh.cells.shapes[cell as usize], mesh.cells.nodes(cell as usize));
+            owners.get(&key).and_then(|face| of_element.get(&face.element)).copied().unwrap_or(1.0)
+        }
+    }
+
     fn keep_faces(&mut self, all: &Analysis) {
+        let thickness = self.thickness_of_faces();
         let mut alike: BTreeMap<String, (Vec<u32>, History)> = BTreeMap::new();
         for (cell, course) in all.pressures.courses(&all.times) {
-            alike.entry(format!("{:?}", course.value)).or_insert((Vec::new(), course.value)).0.push(cell);
+            let key = format!("{}{:?}", thickness(&self.mesh, cell), course.value);
+            alike.entry(key).or_insert((Vec::new(), course.value)).0.push(cell);
         }
         let mut rest: Vec<_> = alike.into_values().collect();
         rest.sort_by_key(|(cells, _)| cells[0]);
@@ -507,7 +548,8 @@ impl Model {
         }
         let mut alike: BTreeMap<String, (Vec<u32>, [History; 3])> = BTreeMap::new();
         for (cell, value) in by_cell {
-            alike.entry(format!("{value:?}")).or_insert((Vec::new(), value)).0.push(cell);
+            let key = format!("{}{value:?}", thickness(&self.mesh, cell));
+            alike.entry(key).or_insert((Vec::new(), value)).0.push(cell);
         }
         for (cells, value) in alike.into_values() {
             let group = self.group_of_faces(cells, "Traction", &all.named);
@@ -519,32 +561,33 @@ impl Model {
         }
         let loads = by_group.into_iter().map(|(group, value)| Load { group, kind: LoadKind::Acceleration(value) });
         self.mesh.loads.extend(loads);
+        for ((group, at), course) in all.rotations.courses(&all.times) {
+            let (origin, axis) = all.axes_of_rotation[at];
+            self.mesh.loads.push(Load { group, kind: LoadKind::Centrifugal { square: course.value, origin, axis } });
+        }
     }
 
     fn keep_temperatures(&mut self, all: &Analysis) {
-        let is_of_step = |value: &History| value.as_constant().is_none();
         let courses = all.temperatures.courses(&all.times);
-        let mut initial: Vec<f64> = all.initial.values().copied().collect();
-        initial.dedup();
-        if initial.len() > 1 && courses.iter().any(|(_, course)| is_of_step(&course.value)) {
-            let fact = "initial temperatures differ: expansion begins at the first one";
-            self.report.push(Diagnostic::warning("not-taken-over", fact));
+        if courses.iter().all(|(_, course)| course.value.as_constant().is_some()) {
+            // initial temperatures alone strain nothing
+            return;
         }
-        if let Some(&first) = initial.first() {
+        let mut initial = all.initial.values().copied();
+        if let Some(first) = initial.next() {
+            if initial.any(|value| value != first) {
+                let fact = "initial temperatures differ: expansion begins at the first one";
+                self.report.push(Diagnostic::warning("not-taken-over", fact));
+            }
             let expansions = self.mesh.materials.iter_mut().filter_map(|own| own.expansion.as_mut());
             expansions.for_each(|own| own.reference = first);
         }
         let mut alike: BTreeMap<String, (Vec<u32>, History)> = BTreeMap::new();
-        for (target, course) in courses {
-            match target {
-                Target::Group(group) => self.mesh.temperatures.push(Temperature { group, value: course.value }),
-                Target::Node(node) => {
-                    alike.entry(format!("{:?}", course.value)).or_insert((Vec::new(), course.value)).0.push(node);
-                }
-            }
+        for (node, course) in courses {
+            alike.entry(format!("{:?}", course.value)).or_insert((Vec::new(), course.value)).0.push(node);
         }
         for (nodes, value) in alike.into_values() {
-            let group = self.group_of_nodes(nodes, "Temperature", &[]);
+            let group = self.group_of_nodes(nodes, "Temperature", &all.named);
             self.mesh.temperatures.push(Temperature { group, value });
         }
     }

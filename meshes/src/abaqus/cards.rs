@@ -8,6 +8,41 @@ use zelus_core::diagnostics::{Diagnostic, Error, Place, Report, Result};
 
 use crate::source;
 
+/// Keywords of several words: CalculiX reads them without blanks, too.
+const WORDS: [&str; 26] = [
+    "COMPLEX FREQUENCY",
+    "CONTACT FILE",
+    "CONTACT OUTPUT",
+    "CONTACT PAIR",
+    "CONTACT PRINT",
+    "CYCLIC SYMMETRY MODEL",
+    "EL FILE",
+    "EL PRINT",
+    "ELEMENT OUTPUT",
+    "END ASSEMBLY",
+    "END INSTANCE",
+    "END PART",
+    "END STEP",
+    "FILE FORMAT",
+    "INITIAL CONDITIONS",
+    "NODE FILE",
+    "NODE OUTPUT",
+    "NODE PRINT",
+    "PHYSICAL CONSTANTS",
+    "PRE-TENSION SECTION",
+    "RIGID BODY",
+    "SECTION PRINT",
+    "SOLID SECTION",
+    "SURFACE BEHAVIOR",
+    "SURFACE INTERACTION",
+    "TIME POINTS",
+];
+
+/// A word without its blanks.
+fn squeezed(word: &str) -> String {
+    word.split_whitespace().collect()
+}
+
 /// Files that include each other are read to this depth.
 const DEPTH: usize = 16;
 
@@ -52,14 +87,19 @@ pub(super) struct Card {
 impl Card {
     /// The value of a parameter, which counts as read; empty where it has none.
     pub(super) fn get(&self, name: &str) -> Option<&str> {
-        let found = self.parameters.iter().find(|own| own.name == name)?;
+        let wanted = squeezed(name);
+        let found = self.parameters.iter().find(|own| squeezed(&own.name) == wanted)?;
         found.is_read.set(true);
         Some(&found.value)
     }
 
     /// Whether a parameter has this value, in any case; another value stays unread.
     pub(super) fn says(&self, name: &str, value: &str) -> bool {
-        let found = self.parameters.iter().find(|own| own.name == name && own.value.eq_ignore_ascii_case(value));
+        let wanted = squeezed(name);
+        let is_own = |own: &&Parameter| {
+            squeezed(&own.name) == wanted && squeezed(&own.value).eq_ignore_ascii_case(&squeezed(value))
+        };
+        let found = self.parameters.iter().find(is_own);
         found.inspect(|own| own.is_read.set(true)).is_some()
     }
 
@@ -180,6 +220,8 @@ fn add(path: &Path, depth: usize, out: &mut Vec<Card>, report: &mut Report) -> R
         let mut words = head.split(',');
         let keyword =
             words.next().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase();
+        let spaced = WORDS.iter().find(|known| squeezed(known) == keyword);
+        let keyword = spaced.map_or(keyword, |known| (*known).to_owned());
         let parameter = |word: &str| {
             let (name, value) = word.split_once('=').unwrap_or((word, ""));
             let name = name.split_whitespace().collect::<Vec<_>>().join(" ").to_ascii_uppercase();

@@ -219,15 +219,34 @@ impl Model {
         if let Some((feature, remedy)) = abaqus_cells::left_out(kind, shape) {
             self.simpler.entry(capitals).or_insert_with(|| (feature, remedy, card.place()));
         }
+        if let (Some(known), Some(plane)) = (self.mesh.plane, plane)
+            && known != plane
+        {
+            let fact =
+                format!("elements of type {kind} assume another plane state than those before: all take the first");
+            self.report.push(card.left_out(fact).remedy("divide the model, or mesh it in space"));
+        }
         self.mesh.plane = self.mesh.plane.or(plane);
-        let fields: Vec<(&str, u32)> = card.fields().collect();
         let mut added = Vec::new();
         let mut wrong = 0;
-        for row in fields.chunks(shape.nodes() + 1) {
+        let mut surplus = 0;
+        let mut rows = card.rows.iter();
+        while let Some(first) = rows.next() {
+            // an element begins at a line and goes on in the next ones until it has all nodes
+            let held = |row: &Row| row.fields.iter().filter(|field| !field.is_empty()).cloned().collect::<Vec<_>>();
+            let mut fields: Vec<(String, u32)> = held(first).into_iter().map(|field| (field, first.line)).collect();
+            while fields.len() <= shape.nodes() {
+                let Some(more) = rows.next() else { break };
+                fields.extend(held(more).into_iter().map(|field| (field, more.line)));
+            }
+            surplus += usize::from(fields.len() > shape.nodes() + 1);
+            let row: Vec<(&str, u32)> = fields.iter().map(|(field, line)| (field.as_str(), *line)).collect();
+            let Some(&(label, _)) = row.first() else { continue };
+            let row = &row[..row.len().min(shape.nodes() + 1)];
             match self.element(card, scope, kind, row) {
                 Ok(cell) => added.push(cell),
                 Err(error) => {
-                    if let Ok(label) = row[0].0.parse() {
+                    if let Ok(label) = label.parse() {
                         self.omitted.insert((scope.to_owned(), label));
                     }
                     wrong += 1;
@@ -238,6 +257,14 @@ impl Model {
             }
         }
         self.count_wrong(card, wrong, "element", "elements");
+        if surplus > 0 {
+            let fact = format!(
+                "{} more nodes than {kind}: the first {} are used",
+                counted(surplus, "element has", "elements have"),
+                shape.nodes()
+            );
+            self.report.push(card.left_out(fact));
+        }
         if let Some(set) = card.get("ELSET") {
             self.sets.set_mut(Kind::Elements, scope, set).cells.extend(added);
         }

@@ -83,7 +83,7 @@ impl<K: Ord + Clone> Schedule<K> {
 
     fn course(&self, entries: &[Entry], times: &Times) -> Course {
         let of = |step: usize| entries.iter().filter(move |entry| entry.step == step);
-        let before: f64 = of(0).map(|entry| entry.value).sum();
+        let before = of(0).fold(0.0, |sum, entry| sum + entry.value);
         let mut out = Course { value: History::constant(before), start: 0.0, end: None };
         let mut has_begun = of(0).next().is_some();
         for (at, step) in times.steps.iter().enumerate() {

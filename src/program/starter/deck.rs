@@ -5,7 +5,7 @@ use zelus_meshes::mesh::{Mesh, Pair};
 
 use super::histories::Histories;
 use super::point_loads::ForceFile;
-use super::{processes, stepping};
+use super::{processes, stepping, thickness};
 
 /// `ProjectParameters.json` with comments on the decisions to take.
 pub(super) fn text(
@@ -38,7 +38,12 @@ pub(super) fn text(
         "\n    \"auxiliary_variables_list\": [\"TEMPERATURE\"], // prescribed below; it expands the bodies"
     };
     let parts: Vec<&str> = mesh.groups.iter().map(|group| group.name.as_str()).collect();
-    let mut loads: Vec<String> = mesh.loads.iter().map(|load| processes::load(load, space, texts)).collect();
+    let mut loads: Vec<String> = mesh
+        .loads
+        .iter()
+        .filter_map(|load| processes::load(load, space, thickness::of(mesh, &load.group, space), texts))
+        .collect();
+    loads.extend(processes::accelerations(mesh, texts));
     loads.extend(forces.map(|file| processes::forces_of_file(&file.group, &file.name, space)).unwrap_or_default());
     let held = supports.iter().flat_map(|support| processes::support(support, space, texts)).collect();
     let mut lists = vec![list("constraints_process_list", held), list("loads_process_list", loads)];

@@ -34,6 +34,15 @@ impl Histories {
         }
     }
 
+    /// A history as a function of t, without quotation marks.
+    pub(super) fn expression(&self, history: &History) -> String {
+        match &straightened(history.points())[..] {
+            [] => "0.0".to_owned(),
+            [[_, value]] => format!("{value:?}"),
+            pieces => self.function(pieces),
+        }
+    }
+
     /// `first piece if t <= its end else (the others)`.
     fn function(&self, points: &[[f64; 2]]) -> String {
         let &[_, last] = points.last().unwrap_or(&[0.0, 0.0]);

@@ -2,7 +2,7 @@
 
 use zelus_meshes::conditions::{Axes, Bolt, Coupling, Load, LoadKind, MaterialAxes, Prescribed, Support, Temperature};
 use zelus_meshes::history::History;
-use zelus_meshes::mesh::{Pair, Plane};
+use zelus_meshes::mesh::{Mesh, Pair, Plane};
 
 use super::histories::Histories;
 
@@ -105,32 +105,74 @@ fn along_axes(support: &Support, axes: &Axes, texts: &mut Histories) -> Vec<Stri
     values.map(one).collect()
 }
 
-/// A load as a process.
-pub(super) fn load(load: &Load, space: usize, texts: &mut Histories) -> String {
+/// A load of nodes or faces as a process. `thickness` is that of the bodies of its faces: loads of lines are forces per length.
+pub(super) fn load(load: &Load, space: usize, thickness: f64, texts: &mut Histories) -> Option<String> {
     let on_conditions = |variable: &str, values: String| {
         let parameters = [part(&load.group), word("variable_name", variable), format!("\"value\": [{values}]")];
         process("assign_vector_variable_to_conditions_process", CORE, &parameters)
     };
     let mut all = |values: &[History; 3]| values.each_ref().map(|value| texts.value(value)).join(", ");
-    match &load.kind {
+    Some(match &load.kind {
         // of a body of revolution: the force of the whole circumference
         LoadKind::Force(values) => on_conditions("POINT_LOAD", all(values)),
         LoadKind::Moment(values) => on_conditions("POINT_MOMENT", all(values)),
-        LoadKind::Traction(values) => on_conditions(if space == 3 { "SURFACE_LOAD" } else { "LINE_LOAD" }, all(values)),
+        LoadKind::Traction(values) => {
+            let values = values.each_ref().map(|value| value.scaled(thickness));
+            on_conditions(if space == 3 { "SURFACE_LOAD" } else { "LINE_LOAD" }, all(&values))
+        }
         LoadKind::Pressure(value) => {
             // the variable that presses: signs differ in the plane and in space
             let variable = if space == 3 { "POSITIVE_FACE_PRESSURE" } else { "NEGATIVE_FACE_PRESSURE" };
-            let value = format!("\"value\": {}", texts.value(value));
+            let value = format!("\"value\": {}", texts.value(&value.scaled(thickness)));
             let parameters = [part(&load.group), word("variable_name", variable), value];
             process("assign_scalar_variable_to_conditions_process", CORE, &parameters)
         }
-        LoadKind::Acceleration(values) => {
-            let values = format!("\"value\": [{}]", all(values));
-            let free = "\"constrained\": false".to_owned();
-            let parameters = [part(&load.group), word("variable_name", "VOLUME_ACCELERATION"), free, values];
-            process("assign_vector_variable_process", CORE, &parameters)
-        }
+        LoadKind::Acceleration(_) | LoadKind::Centrifugal { .. } => return None,
+    })
+}
+
+/// Accelerations of bodies: those of one group add up in one process.
+pub(super) fn accelerations(mesh: &Mesh, texts: &Histories) -> Vec<String> {
+    let mut by_group: Vec<(&str, [Vec<String>; 3])> = Vec::new();
+    for load in &mesh.loads {
+        let terms: [Option<String>; 3] = match &load.kind {
+            LoadKind::Acceleration(values) => values
+                .each_ref()
+                .map(|value| (value.as_constant() != Some(0.0)).then(|| format!("({})", texts.expression(value)))),
+            LoadKind::Centrifugal { square, origin, axis } => {
+                // a = ω² (1 − e eᵀ) (X − X₀)
+                let square = texts.expression(square);
+                [0, 1, 2].map(|i| {
+                    let term = |j: usize| {
+                        let factor = f64::from(u8::from(i == j)) - axis[i] * axis[j];
+                        let name = ["X", "Y", "Z"][j];
+                        (factor != 0.0).then(|| format!("({factor:?})*({name} - ({:?}))", origin[j]))
+                    };
+                    let terms: Vec<String> = (0..3).filter_map(term).collect();
+                    (!terms.is_empty()).then(|| format!("({square})*({})", terms.join(" + ")))
+                })
+            }
+            _ => continue,
+        };
+        let at = by_group.iter().position(|(group, _)| *group == load.group).unwrap_or_else(|| {
+            by_group.push((&load.group, [Vec::new(), Vec::new(), Vec::new()]));
+            by_group.len() - 1
+        });
+        by_group[at].1.iter_mut().zip(terms).for_each(|(all, term)| all.extend(term));
     }
+    let text = |(group, components): (&str, [Vec<String>; 3])| {
+        let value = |terms: Vec<String>| {
+            if terms.is_empty() { "0.0".to_owned() } else { format!("\"{}\"", terms.join(" + ")) }
+        };
+        let values = format!("\"value\": [{}]", components.map(value).join(", "));
+        let free = "\"constrained\": false".to_owned();
+        process(
+            "assign_vector_variable_process",
+            CORE,
+            &[part(group), word("variable_name", "VOLUME_ACCELERATION"), free, values],
+        )
+    };
+    by_group.into_iter().map(text).collect()
 }
 
 /// Forces of many nodes, which a file gives node by node.

@@ -37,7 +37,7 @@ fn histories(mesh: &Mesh) -> Vec<&History> {
     let mut out: Vec<&History> = mesh.supports.iter().flat_map(|support| support.values.iter().flatten()).collect();
     for load in &mesh.loads {
         match &load.kind {
-            LoadKind::Pressure(value) => out.push(value),
+            LoadKind::Pressure(value) | LoadKind::Centrifugal { square: value, .. } => out.push(value),
             LoadKind::Force(all) | LoadKind::Moment(all) | LoadKind::Traction(all) | LoadKind::Acceleration(all) => {
                 out.extend(all);
             }
