@@ -61,6 +61,8 @@ pub struct Load {
 pub enum LoadKind {
     /// The same force on each node.
     Force([History; 3]),
+    /// Total force, spread over the area of the group.
+    Total([History; 3]),
     /// The same moment on each node.
     Moment([History; 3]),
     /// Force per area against the outward normal of the faces.

@@ -2,7 +2,9 @@
 
 mod deck;
 mod histories;
+mod known_materials;
 mod materials;
+mod options;
 mod point_loads;
 mod processes;
 mod stepping;
@@ -50,6 +52,8 @@ pub(super) struct NewArguments {
     /// Beginning of the names of elements; by default SmallDisplacementElement, or TotalLagrangianElement where the file says NLGEOM.
     #[arg(long, value_name = "NAME")]
     element_name: Option<String>,
+    #[command(flatten)]
+    options: options::Options,
 }
 
 /// Reads the mesh and writes deck, materials and mesh file.
@@ -65,6 +69,7 @@ pub(super) fn run(arguments: &NewArguments) -> Result<()> {
     if is_found {
         mesh.pairs = proximity::find_pairs(&mut mesh);
     }
+    let whole = arguments.options.apply(&mut mesh)?;
     let by_file = if mesh.is_large { LARGE } else { PLAIN };
     let element = arguments.element_name.clone().unwrap_or_else(|| by_file.to_owned());
     mesh.is_large = !element.starts_with("SmallDisplacement");
@@ -77,7 +82,7 @@ pub(super) fn run(arguments: &NewArguments) -> Result<()> {
     let stem = from.file_stem().map_or("mesh".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from(&stem));
     let supports = supports::of(&mesh, &mut said);
-    let materials = materials::text(&mesh, space, &mut said);
+    let materials = materials::text(&mesh, space, whole.as_ref(), &mut said);
     let mut texts = Histories::new(stepping::end(&mesh));
     let deck = deck::text(&mesh, &stem, space, &supports, forces.as_ref(), &mut texts);
     let mut files =

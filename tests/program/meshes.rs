@@ -487,3 +487,57 @@ fn pressures_on_plates_of_abaqus_act_on_their_thickness() {
     let sum: f64 = simulation.field("REACTION").unwrap().iter().step_by(3).sum();
     assert!((sum + 250.0).abs() < 1e-9, "{sum}");
 }
+
+/// Supports, loads, friction and materials by options: an aluminium block of 1 mm under 700 N along z and 100 MPa, E = 70000.
+#[test]
+fn options_state_supports_loads_friction_and_materials() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path();
+    let text = block_of_abaqus("", "", "").replace("*MATERIAL, NAME=M\n*SOLID SECTION, ELSET=A, MATERIAL=M\n", "");
+    std::fs::write(folder.join("block.inp"), text).unwrap();
+    let new = |arguments: &[&str]| zelus(folder, &[&["new", "--from", "block.inp"], arguments].concat());
+    let options = ["--fix", "LOW=z", "--fix", "ALL=xy", "--material", "aluminium", "--friction", "0.2", "-o", "deck"];
+    let output = new(&[&options[..], &["--load", "FACE=0.7kN,-z", "--load", "FACE=100MPa"]].concat());
+    assert!(output.status.success(), "{}", said(&output));
+    let simulation = solved(&folder.join("deck/ProjectParameters.json"));
+    // held across: u = σ (1 + ν) (1 − 2 ν) / (1 − ν) l / E with σ = 800, ν = 0.3
+    let wanted = -800.0 * 1.3 * 0.4 / 0.7 / 70_000.0;
+    let found = displacement(&simulation, [0.5, 0.5, 1.0])[2];
+    assert!((found / wanted - 1.0).abs() < 1e-9, "{found} {wanted}");
+    assert!((reaction(&simulation, 2) - 800.0).abs() < 1e-6);
+    let materials = std::fs::read_to_string(folder.join("deck/StructuralMaterials.json")).unwrap();
+    assert!(materials.contains("aluminium (EN 1999-1-1, 3.2.5)") && materials.contains("2.7e-9"), "{materials}");
+    for (arguments, fact) in [
+        (["--fix", "LOV"], "the mesh has no part \"LOV\""),
+        (["--fix", "LOW=w"], "are no directions"),
+        (["--load", "FACE"], "has no value"),
+        (["--load", "FACE=5"], "a force has a direction"),
+        (["--load", "FACE=5N,up"], "is no direction"),
+        (["--load", "FACE=5MPa,z"], "along the normal"),
+        (["--load", "LOW=5MPa"], "has no faces"),
+        (["--material", "stele"], "did you mean \"steel\""),
+        (["--material", "LOW=steel"], "has no elements"),
+        (["--friction", "nan"], "is no coefficient"),
+    ] {
+        let output = new(&arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", said(&output));
+        assert!(said(&output).contains(fact), "{arguments:?}: {}", said(&output));
+    }
+}
+
+/// A coefficient of friction of the command line is that of all pairs that are found, and materials of bodies differ.
+#[test]
+fn options_reach_pairs_that_are_found() {
+    let scratch = tempfile::tempdir().unwrap();
+    let mesh = data("solids_1_41.msh");
+    let arguments =
+        ["new", "--from", mesh.to_str().unwrap(), "-o", "deck", "--friction", "0.25", "--material", "Tets=titanium"];
+    let output = zelus(scratch.path(), &arguments);
+    assert!(output.status.success(), "{}", said(&output));
+    let deck = std::fs::read_to_string(scratch.path().join("deck/ProjectParameters.json")).unwrap();
+    assert!(deck.contains("\"contact_type\": \"Frictional\"") && deck.contains("{\"0\": 0.25, \"1\": 0.25}"), "{deck}");
+    let materials = std::fs::read_to_string(scratch.path().join("deck/StructuralMaterials.json")).unwrap();
+    assert!(materials.contains("110000.0") && materials.contains("210000.0"), "{materials}");
+    let output = zelus(&scratch.path().join("deck"), &["check", "ProjectParameters.json"]);
+    assert!(output.status.success(), "{}", said(&output));
+}

@@ -7,12 +7,14 @@ use zelus_meshes::mesh::{Material, Mesh, Plane};
 /// Plastic strain and slope factor beyond a yield curve: its last stress stays.
 const BEYOND: f64 = 10.0;
 
-/// The file of materials: those of the mesh, else steel in newtons and millimetres for every body. Notes what no law has.
-pub(super) fn text(mesh: &Mesh, space: usize, said: &mut Vec<Diagnostic>) -> String {
+/// The file of materials: those of the mesh, else `whole`, else steel in newtons and millimetres for every body. Notes what no law has.
+pub(super) fn text(mesh: &Mesh, space: usize, whole: Option<&Material>, said: &mut Vec<Diagnostic>) -> String {
     let mut entries = Vec::new();
     for (at, own) in parts(mesh).iter().enumerate() {
         let known = own.material.filter(|material| material.young.is_some() || material.orthotropic.is_some());
         let remark = match (known, own.material) {
+            (None, _) if whole.is_some() => whole.map(|material| material.name.clone()).unwrap_or_default(),
+            (Some(material), _) if material.name.ends_with(')') => material.name.clone(),
             (Some(material), _) => format!("{}, from the mesh file", material.name),
             (None, Some(material)) => {
                 format!("{}: the mesh file gives no elasticity; steel, in N and mm", material.name)
@@ -20,7 +22,7 @@ pub(super) fn text(mesh: &Mesh, space: usize, said: &mut Vec<Diagnostic>) -> Str
             (None, None) => "steel, in N and mm: state your own".to_owned(),
         };
         let steel = Material { young: Some(210_000.0), poisson: 0.3, ..Material::default() };
-        let material = known.unwrap_or(&steel);
+        let material = known.or(whole).unwrap_or(&steel);
         let about = mesh.material_axes.iter().find(|axes| format!("Structure.{}", axes.group) == own.part);
         let is_around = about.is_some_and(|axes| matches!(axes.axes, Axes::Cylindrical { .. }));
         let mut variables = elasticity(material, is_around);

@@ -115,6 +115,10 @@ pub(super) fn load(load: &Load, space: usize, thickness: f64, texts: &mut Histor
     Some(match &load.kind {
         // of a body of revolution: the force of the whole circumference
         LoadKind::Force(values) => on_conditions("POINT_LOAD", all(values)),
+        LoadKind::Total(values) => {
+            let values = format!("\"load\": [{}]", all(values));
+            process("distribute_load_on_surface_process", STRUCTURAL, &[part(&load.group), values])
+        }
         LoadKind::Moment(values) => on_conditions("POINT_MOMENT", all(values)),
         LoadKind::Traction(values) => {
             let values = values.each_ref().map(|value| value.scaled(thickness));

@@ -38,7 +38,11 @@ fn histories(mesh: &Mesh) -> Vec<&History> {
     for load in &mesh.loads {
         match &load.kind {
             LoadKind::Pressure(value) | LoadKind::Centrifugal { square: value, .. } => out.push(value),
-            LoadKind::Force(all) | LoadKind::Moment(all) | LoadKind::Traction(all) | LoadKind::Acceleration(all) => {
+            LoadKind::Force(all)
+            | LoadKind::Total(all)
+            | LoadKind::Moment(all)
+            | LoadKind::Traction(all)
+            | LoadKind::Acceleration(all) => {
                 out.extend(all);
             }
         }
