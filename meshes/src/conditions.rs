@@ -136,3 +136,29 @@ pub struct Temperature {
     /// Temperature over time.
     pub value: History,
 }
+
+/// Two sides of a sector that repeats around an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cyclic {
+    /// The group of the side that leads.
+    pub first: String,
+    /// The group of the side that follows.
+    pub second: String,
+    /// A point of the axis.
+    pub origin: [f64; 3],
+    /// Its direction.
+    pub axis: [f64; 3],
+    /// Angle from the first side to the second, by the right-hand rule (degree).
+    pub angle: f64,
+}
+
+/// Distance between two surfaces, whatever the mesh gives them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clearance {
+    /// The group of the slave side.
+    pub slave: String,
+    /// The group of the master side.
+    pub master: String,
+    /// Distance along the normal of the slave; negative: interference.
+    pub value: f64,
+}

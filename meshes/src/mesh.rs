@@ -2,7 +2,7 @@
 
 use zelus_core::geometry::Shape;
 
-use super::conditions::{Bolt, Coupling, Equation, Load, MaterialAxes, Support, Temperature};
+use super::conditions::{Bolt, Clearance, Coupling, Cyclic, Equation, Load, MaterialAxes, Support, Temperature};
 
 /// Nodes, cells, named groups of both, and further contents of an input file of a solver.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -31,6 +31,10 @@ pub struct Mesh {
     pub couplings: Vec<Coupling>,
     /// Bolts.
     pub bolts: Vec<Bolt>,
+    /// Sides of sectors that repeat around an axis.
+    pub sectors: Vec<Cyclic>,
+    /// Distances of surfaces by number.
+    pub clearances: Vec<Clearance>,
     /// Axes of materials.
     pub material_axes: Vec<MaterialAxes>,
     /// Temperatures that expand bodies.

@@ -112,6 +112,21 @@ fn lines_that_do_not_fit_are_left_out_and_named() {
         ("*INCLUDE, INPUT=nothing.inp\n", "there is no file", 7),
         ("*SOLID SECTION, ELSET=X, MATERIAL=M\n", "there is no set of elements X", 7),
         ("*CLOAD, AMPLITUDE=X\n1,1,2.\n", "there is no *AMPLITUDE X", 7),
+        ("*EQUATION\n99999999999\n1,1,1.\n", "an equation has too few terms", 8),
+        ("*EQUATION\n2\n1,1,1.,2,7,1.\n", "degree of freedom 7 is no displacement", 9),
+        ("*MPC\nBEAM,1,2\n", "kind BEAM is not known", 8),
+        (
+            "*SURFACE INTERACTION,NAME=I\n*SURFACE BEHAVIOR,NO SEPARATION,PRESSURE-OVERCLOSURE=HARD\n",
+            "NO SEPARATION of",
+            8,
+        ),
+        (
+            "*SURFACE INTERACTION,NAME=I\n*SURFACE BEHAVIOR,PRESSURE-OVERCLOSURE=EXPONENTIAL\n1.,2.\n",
+            "PRESSURE-OVERCLOSURE of",
+            8,
+        ),
+        ("*CONTACT INTERFERENCE\nA,B,1.\n", "*CONTACT INTERFERENCE is not read", 7),
+        ("*STEP\n*STATIC\n*BOUNDARY,FIXED\n1,1\n", "FIXED holds nodes", 10),
         ("*CLOAD\n1,11,2.\n", "degree of freedom 11 is no displacement", 8),
     ] {
         let (mesh, said) = of_text(&format!("{TRIANGLE}{text}")).unwrap();

@@ -541,3 +541,66 @@ fn options_reach_pairs_that_are_found() {
     let output = zelus(&scratch.path().join("deck"), &["check", "ProjectParameters.json"]);
     assert!(output.status.success(), "{}", said(&output));
 }
+
+/// A quarter of a ring of one element, under pressure inside, as a cyclic sector: the radial displacement is the same on both sides, and
+/// forces balance as in the sector with planes of symmetry.
+#[test]
+fn cyclic_sectors_of_abaqus_repeat() {
+    let ring = |cards: &str| {
+        let mut nodes = "*NODE\n".to_owned();
+        for (k, z) in [0.0, 1.0].into_iter().enumerate() {
+            for i in 0..5_u32 {
+                let (sine, cosine) = (f64::from(i) * std::f64::consts::FRAC_PI_2 / 4.0).sin_cos();
+                for (j, r) in [1.0, 2.0].into_iter().enumerate() {
+                    nodes +=
+                        &format!("{}, {:?}, {:?}, {z}\n", 1 + j as u32 + 2 * i + 10 * k as u32, r * cosine, r * sine);
+                }
+            }
+        }
+        let element = |i: u32| {
+            let [a, b, c, d] = [1, 2, 4, 3].map(|node| node + 2 * i);
+            format!("{}, {a}, {b}, {c}, {d}, {}, {}, {}, {}\n", i + 1, a + 10, b + 10, c + 10, d + 10)
+        };
+        let elements: String = (0..4).map(element).collect();
+        format!(
+            "{nodes}*ELEMENT, TYPE=C3D8, ELSET=A\n{elements}*NSET, NSET=ALL, GENERATE\n1, 20\n*NSET, NSET=X\n1, 2, 11, 12\n\
+             *NSET, NSET=Y\n9, 10, 19, 20\n*SURFACE, NAME=SX, TYPE=NODE\nX\n*SURFACE, NAME=SY, TYPE=NODE\nY\n*MATERIAL, NAME=M\n\
+             {PLAIN}*SOLID SECTION, ELSET=A, MATERIAL=M\n*BOUNDARY\nALL, 3, 3\n{cards}*STEP\n*STATIC\n*DLOAD\nA, P6, 10.\n*END STEP\n"
+        )
+    };
+    let planes = "*BOUNDARY\nX, 2, 2\nY, 1, 1\n";
+    let (_scratch, wanted, _) = of_input(&ring(planes));
+    for sides in ["SY, SX", "SX, SY"] {
+        // rotations about the axis are held at one node
+        let sector = format!(
+            "*TIE, NAME=T, CYCLIC SYMMETRY\n{sides}\n*CYCLIC SYMMETRY MODEL, N=4, TIE=T\n0., 0., 0., 0., 0., 1.\n*BOUNDARY\n5, 1, 1, 0.\n"
+        );
+        let sector = sector.replace("5, 1, 1, 0.\n", "").replace("*BOUNDARY\n", "");
+        let held = format!("{sector}*TRANSFORM, NSET=ONE, TYPE=C\n0., 0., 0., 0., 0., 1.\n*BOUNDARY\nONE, 2, 2\n");
+        let text = ring(&held).replace("*SURFACE, NAME=SX", "*NSET, NSET=ONE\n5\n*SURFACE, NAME=SX");
+        let (_scratch, simulation, said) = of_input(&text);
+        assert!(!said.contains("warning"), "{said}");
+        let radial = |simulation: &Simulation, point: [f64; 3]| {
+            let [x, y, _] = displacement(simulation, point);
+            (x * point[0] + y * point[1]) / point[0].hypot(point[1])
+        };
+        let (root, inner) = (0.5_f64.sqrt(), [1.0, 0.0, 0.0]);
+        for point in [inner, [0.0, 2.0, 1.0], [root, root, 0.0]] {
+            let (found, exact) = (radial(&simulation, point), radial(&wanted, point));
+            assert!((found / exact - 1.0).abs() < 1e-9, "{sides} {point:?}: {found} {exact}");
+        }
+    }
+}
+
+/// A clearance of 0.01 between two columns that the mesh lets touch: of a motion of 0.02 half strains them, 210e3 · 0.01 / 2.
+#[test]
+fn clearances_of_abaqus_open_surfaces() {
+    let joint = "*SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nSS, SM\n*CLEARANCE, MASTER=SM, SLAVE=SS, VALUE=0.01\n";
+    let text = pulled_cubes(joint).replace("3, 3, 0.001", "3, 3, -0.02");
+    let (_scratch, simulation, said) = of_input(&text);
+    assert!(!said.contains("warning"), "{said}");
+    let force = reaction(&simulation, 2);
+    // the moved body is shorter by the clearance
+    let wanted = 210e3 * 0.01 / 2.0;
+    assert!((force / wanted - 1.0).abs() < 0.01, "{force} {wanted}");
+}

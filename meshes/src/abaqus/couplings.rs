@@ -157,7 +157,8 @@ impl Model {
         while let Some(&(count, line)) = fields.get(at) {
             let count: usize =
                 count.parse().map_err(|_| card.wrong_at(line, format!("{count:?} is no number of terms")))?;
-            let terms = fields.get(at + 1..at + 1 + 3 * count);
+            let is_held = count <= fields.len();
+            let terms = fields.get(at + 1..at + 1 + 3 * count.min(fields.len())).filter(|_| is_held && count > 0);
             let terms = terms.ok_or_else(|| card.wrong_at(line, "an equation has too few terms"))?;
             at += 1 + 3 * count;
             let made = self.equation(card, scope, terms, special);

@@ -49,6 +49,8 @@ pub(super) fn text(
     let mut lists = vec![list("constraints_process_list", held), list("loads_process_list", loads)];
     let mut add = |name: &str, items: Vec<String>| lists.extend((!items.is_empty()).then(|| list(name, items)));
     add("couplings_process_list", mesh.couplings.iter().map(|own| processes::coupling(own, supports)).collect());
+    add("periodicity_process_list", mesh.sectors.iter().map(processes::sector).collect());
+    add("clearances_process_list", mesh.clearances.iter().map(processes::clearance).collect());
     add("bolts_process_list", mesh.bolts.iter().filter_map(|bolt| processes::bolt(bolt, texts)).collect());
     add("axes_process_list", mesh.material_axes.iter().map(processes::material_axes).collect());
     add("temperatures_process_list", mesh.temperatures.iter().map(|own| processes::temperature(own, texts)).collect());

@@ -1,6 +1,8 @@
 //! Processes of a starter deck: supports, loads, couplings, contact, ties, temperatures and axes of materials.
 
-use zelus_meshes::conditions::{Axes, Bolt, Coupling, Load, LoadKind, MaterialAxes, Prescribed, Support, Temperature};
+use zelus_meshes::conditions::{
+    Axes, Bolt, Clearance, Coupling, Cyclic, Load, LoadKind, MaterialAxes, Prescribed, Support, Temperature,
+};
 use zelus_meshes::history::History;
 use zelus_meshes::mesh::{Mesh, Pair, Plane};
 
@@ -204,6 +206,32 @@ pub(super) fn coupling(coupling: &Coupling, supports: &[Support]) -> String {
         parameters.push("\"reference_node_leads\": true".to_owned());
     }
     process(module, STRUCTURAL, &parameters)
+}
+
+pub(super) fn sector(sector: &Cyclic) -> String {
+    let rotation = format!(
+        "\"transformation_settings\": {{\"rotation_settings\": {{\"center\": {}, \"axis_of_rotation\": {}, \"angle_degree\": {:?}}}}}",
+        vector(&sector.origin),
+        vector(&sector.axis),
+        sector.angle
+    );
+    let parameters = [
+        word("model_part_name", "Structure"),
+        word("first_model_part_name", &sector.first),
+        word("second_model_part_name", &sector.second),
+        "\"variable_names\": [\"DISPLACEMENT\"]".to_owned(),
+        rotation,
+    ];
+    process("apply_periodic_condition_process", CORE, &parameters)
+}
+
+pub(super) fn clearance(clearance: &Clearance) -> String {
+    let parameters = [
+        part(&clearance.slave),
+        word("master_model_part_name", &format!("Structure.{}", clearance.master)),
+        format!("\"clearance\": {:?}", clearance.value),
+    ];
+    process("initial_clearance_process", CONTACT, &parameters)
 }
 
 pub(super) fn bolt(bolt: &Bolt, texts: &mut Histories) -> Option<String> {
