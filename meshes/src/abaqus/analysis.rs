@@ -190,11 +190,11 @@ impl Model {
                         nodes.first().and_then(|node| all.special.axes_of.get(node)).copied()
                     }
                 };
-                if let Target::Node(node) = target {
-                    if let (true, Some(&bolt)) = (is_fixed, all.special.bolts.get(&node)) {
-                        all.locked.insert(bolt, all.step);
-                        continue;
-                    }
+                if let (Target::Node(node), true) = (&target, is_fixed)
+                    && let Some(&bolt) = all.special.bolts.get(node)
+                {
+                    all.locked.insert(bolt, all.step);
+                    continue;
                 }
                 if is_fixed {
                     return Err(card.wrong_at(row.line, "FIXED holds nodes where they are: this line"));
