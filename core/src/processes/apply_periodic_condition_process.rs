@@ -142,7 +142,7 @@ fn congruence(settings: &Settings, space: usize) -> Result<Congruence> {
 fn variables(settings: &Settings, names: &[String], space: usize, turns: bool) -> Result<Vec<Periodic>> {
     if names.is_empty() {
         let problem = settings.error(VARIABLES, "missing-key", "no variable is named");
-        return Err(problem.remedy("write [\"DISPLACEMENT\"]").into());
+        return Err(problem.remedy("name the unknowns of the nodes, a vector or a scalar").into());
     }
     let of_name = |name: &String| match named(name) {
         Some(Named::Whole(column, VariableKind::Vector3)) => {

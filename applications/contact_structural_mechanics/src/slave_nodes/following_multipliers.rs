@@ -8,7 +8,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use zelus_core::model::{MasterSlaveConstraint, ModelPart, NodeUnknown, ScalarVariable};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
-use super::slave_states::set_name;
 use crate::interface::Patches;
 use crate::law::Multiplier;
 
@@ -36,8 +35,8 @@ fn leader<'c>(
     (alone && leader != node).then_some((leader, own))
 }
 
-/// Constrains the multipliers of the slave nodes of patches, whose names begin with `name`.
-pub(super) fn constrain(part: &mut ModelPart, patches: &Patches, name: &str, multiplier: Multiplier) {
+/// Constrains the multipliers of the slave nodes of patches, which form the sets of these names.
+pub(super) fn constrain(part: &mut ModelPart, patches: &Patches, names: &[String], multiplier: Multiplier) {
     let space = part.info.domain_size;
     let mut new = Vec::new();
     {
@@ -52,7 +51,7 @@ pub(super) fn constrain(part: &mut ModelPart, patches: &Patches, name: &str, mul
                     continue;
                 }
                 let follows = |unknown: ScalarVariable, terms: Vec<(ScalarVariable, f64)>| MasterSlaveConstraint {
-                    set: Some(set_name(name, patch)),
+                    set: Some(names[patch as usize].clone()),
                     origin: ORIGIN.to_owned(),
                     ..MasterSlaveConstraint::new(
                         (node, unknown),

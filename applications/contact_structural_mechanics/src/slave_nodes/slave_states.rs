@@ -55,7 +55,7 @@ impl SlaveTable {
         for (patch, name) in names.iter().enumerate() {
             part.slave_nodes.set(name, &patches.nodes_of(patch as u32));
         }
-        following_multipliers::constrain(part, patches, name, multiplier);
+        following_multipliers::constrain(part, patches, &names, multiplier);
         let owner = |slave: SlaveIndex| {
             let name = &names[patches.patch(slave) as usize];
             part.slave_nodes.find(name, patches.mesh_node(slave)).expect("a set that was just made")
