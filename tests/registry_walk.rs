@@ -92,15 +92,21 @@ fn tangents_are_derivatives() {
             .any(|(element, of_law, _)| entry.name.contains(element) && law.is_some_and(|law| law.starts_with(of_law)));
         let x = cell(shape, entry.space, 0.05, &mut random);
         let mut specimen = Specimen::new(entry, law, &x, &order(shape), Loads::Scalars).unwrap();
-        let u = state(&specimen, if at_rest { 1e-9 } else { 0.05 }, &mut random);
+        // Cells with short edges must not turn inside out.
+        let amount = match shape {
+            Shape::Pyramid13 => 0.02,
+            Shape::Prism18 => 0.03,
+            _ => 0.05,
+        };
+        let u = state(&specimen, if at_rest { 1e-9 } else { amount }, &mut random);
         specimen.set(&u);
         let (k, rhs) = specimen.system();
         assert_eq!(specimen.residual(), rhs, "{name}: the residual depends on what is wanted");
         let n = rhs.len();
         let largest = size(k.iter().copied()).max(1e-3 * size(rhs.iter().copied()));
-        let error = difference(&k, &specimen.difference_tangent(&u, 1e-4));
         // Where principal stresses are near each other, differences see how fast their directions turn.
         let by_principal = law.is_some_and(|law| law.ends_with("Rankine") || law.ends_with("Tresca"));
+        let error = difference(&k, &specimen.difference_tangent(&u, if by_principal { 1e-6 } else { 1e-4 }));
         let tolerance = if at_rest || by_principal { 1e-5 } else { 1e-8 };
         assert!(error <= tolerance * largest, "{name}: the tangent is off by {error:e} of {largest:e}");
         let kind = specimen.block.tangent();

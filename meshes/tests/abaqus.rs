@@ -103,7 +103,7 @@ fn elements_that_come_in_as_simpler_ones_are_named() {
 fn lines_that_do_not_fit_are_left_out_and_named() {
     for (text, fact, line) in [
         ("*ELEMENT,TYPE=CPS3\n8,1,2,9\n", "element 8 has node 9, which is not there", 8),
-        ("*ELEMENT,TYPE=C3D5\n8,1,2,3,4,5\n", "elements of type C3D5 are not known", 7),
+        ("*ELEMENT,TYPE=C3D7\n8,1,2,3,4,5\n", "elements of type C3D7 are not known", 7),
         ("*NSET,NSET=A\nB\n", "there is no node or set of nodes B", 8),
         ("*SURFACE,NAME=S\nE,S4\n", "element 7 has no face \"S4\"", 8),
         ("*NODE\n1,0,0\n", "node 1 stands there twice", 8),
@@ -133,7 +133,7 @@ fn lines_that_do_not_fit_are_left_out_and_named() {
         assert_says(&said, line, fact);
         assert_eq!(mesh.cells.len(), 1, "{text}");
     }
-    let error = of_text("*NODE\n1,0,0\n*ELEMENT,TYPE=C3D5\n8,1\n").unwrap_err().to_string();
+    let error = of_text("*NODE\n1,0,0\n*ELEMENT,TYPE=C3D7\n8,1\n").unwrap_err().to_string();
     assert!(error.contains("no elements"), "{error}");
 }
 

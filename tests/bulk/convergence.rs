@@ -94,6 +94,7 @@ fn second_order_in_the_plane() {
 #[test]
 fn first_order_in_space() {
     check(Shape::Tet4, [14, 24], 2.0);
+    check(Shape::Pyramid5, [10, 16], 2.0);
     check(Shape::Prism6, [12, 20], 2.0);
     check(Shape::Hex8, [8, 16], 2.0);
 }
@@ -101,7 +102,9 @@ fn first_order_in_space() {
 #[test]
 fn second_order_in_space() {
     check(Shape::Tet10, [6, 10], 3.0);
+    check(Shape::Pyramid13, [4, 8], 3.0);
     check(Shape::Prism15, [5, 9], 3.0);
+    check(Shape::Prism18, [5, 8], 3.0);
     check(Shape::Hex20, [4, 7], 3.0);
     check(Shape::Hex27, [4, 7], 3.0);
 }

@@ -37,7 +37,7 @@ fn pure_bending_of_shapes_of_second_order() {
 #[test]
 fn bending_of_a_cantilever() {
     let (length, side, young, load) = (20.0, 1.0, 1e6, 1e-2);
-    for shape in [Shape::Hex20, Shape::Hex27, Shape::Tet10, Shape::Prism15] {
+    for shape in [Shape::Hex20, Shape::Hex27, Shape::Tet10, Shape::Pyramid13, Shape::Prism15, Shape::Prism18] {
         let grid = Grid::new(shape, &[10, 2, 2], |p| [length * p[0], side * p[1], side * p[2]]);
         let law = json!({"YOUNG_MODULUS": young, "POISSON_RATIO": 0.3});
         let mut deck = Deck::new(&grid, "SmallDisplacementElement", "LinearElastic3DLaw", law);

@@ -22,6 +22,8 @@ fn pieces(corners: usize, dim: usize) -> Vec<Vec<usize>> {
         (2, 4) => vec![vec![0, 1, 3, 2]],
         (2, 3) => vec![vec![0, 1, 3], vec![0, 3, 2]],
         (3, 8) => vec![vec![0, 1, 3, 2, 4, 5, 7, 6]],
+        // around the corner 0
+        (3, 5) => vec![vec![1, 5, 7, 3, 0], vec![2, 3, 7, 6, 0], vec![4, 6, 7, 5, 0]],
         (3, 6) => vec![vec![0, 1, 3, 4, 5, 7], vec![0, 3, 2, 4, 7, 6]],
         // around the diagonal 0-7, one for each order of the axes
         _ => [[1, 3], [3, 2], [2, 6], [6, 4], [4, 5], [5, 1]].iter().map(|[a, b]| vec![0, *a, *b, 7]).collect(),
@@ -38,10 +40,15 @@ impl Grid {
         let count = |axis: usize| divisions.get(axis).copied().unwrap_or(1);
         for index in 0..count(0) * count(1) * count(2) {
             let base = [index % count(0), index / count(0) % count(1), index / count(0) / count(1)];
-            for piece in pieces(corners, dim) {
+            // Pyramids of neighbours are mirror images, so that their faces meet.
+            let mirrored = if corners == 5 { (0..3).map(|a| base[a] % 2 << a).sum() } else { 0_usize };
+            for mut piece in pieces(corners, dim) {
+                if mirrored.count_ones() % 2 == 1 {
+                    piece.swap(1, 3);
+                }
                 let corner = |bits: usize| -> Vec3 {
                     std::array::from_fn(|a| match a < dim {
-                        true => (base[a] + (bits >> a & 1)) as f64 / count(a) as f64,
+                        true => (base[a] + ((bits ^ mirrored) >> a & 1)) as f64 / count(a) as f64,
                         false => 0.0,
                     })
                 };

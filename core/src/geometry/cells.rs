@@ -51,8 +51,25 @@ const TETRAHEDRON: [[f64; 3]; 10] = [
     [0.0, 0.5, 0.5],
 ];
 
-/// Triangle edges of the bottom, uprights, triangle edges of the top.
-const PRISM: [[f64; 3]; 15] = [
+/// Base, apex, edges of the base, edges to the apex.
+const PYRAMID: [[f64; 3]; 13] = [
+    [-1.0, -1.0, 0.0],
+    [1.0, -1.0, 0.0],
+    [1.0, 1.0, 0.0],
+    [-1.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [0.0, -1.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [-1.0, 0.0, 0.0],
+    [-0.5, -0.5, 0.5],
+    [0.5, -0.5, 0.5],
+    [0.5, 0.5, 0.5],
+    [-0.5, 0.5, 0.5],
+];
+
+/// Triangle edges of the bottom, uprights, triangle edges of the top, upright faces.
+const PRISM: [[f64; 3]; 18] = [
     [0.0, 0.0, 0.0],
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],
@@ -68,6 +85,9 @@ const PRISM: [[f64; 3]; 15] = [
     [0.5, 0.0, 1.0],
     [0.5, 0.5, 1.0],
     [0.0, 0.5, 1.0],
+    [0.5, 0.0, 0.5],
+    [0.5, 0.5, 0.5],
+    [0.0, 0.5, 0.5],
 ];
 
 /// Edges of the bottom, uprights, edges of the top; faces −z, −y, +x, +y, −x, +z; centre.
@@ -105,7 +125,7 @@ const fn head<const K: usize>(points: &'static [[f64; 3]]) -> &'static [[f64; 3]
     points.split_at(K).0
 }
 
-const SAME: &[usize; 10] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9];
+const SAME: &[usize; 13] = &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12];
 
 const fn same<const K: usize>() -> &'static [usize] {
     SAME.split_at(K).0
@@ -248,6 +268,60 @@ pub(super) const CELLS: &[ReferenceCell; Shape::ALL.len()] = &[
         gid_name: "Tetrahedra",
     },
     ReferenceCell {
+        shape: Shape::Pyramid5,
+        dim: 3,
+        points: head::<5>(&PYRAMID),
+        centre: [0.0, 0.0, 0.25],
+        faces: &[
+            surface(&[0, 3, 2, 1]),
+            surface(&[0, 1, 4]),
+            surface(&[1, 2, 4]),
+            surface(&[2, 3, 4]),
+            surface(&[3, 0, 4]),
+        ],
+        edges: &[
+            line(&[0, 1]),
+            line(&[1, 2]),
+            line(&[2, 3]),
+            line(&[3, 0]),
+            line(&[0, 4]),
+            line(&[1, 4]),
+            line(&[2, 4]),
+            line(&[3, 4]),
+        ],
+        default_order: 2,
+        vtk_type: 14,
+        vtk_order: same::<5>(),
+        gid_name: "Pyramid",
+    },
+    ReferenceCell {
+        shape: Shape::Pyramid13,
+        dim: 3,
+        points: &PYRAMID,
+        centre: [0.0, 0.0, 0.25],
+        faces: &[
+            surface(&[0, 3, 2, 1, 8, 7, 6, 5]),
+            surface(&[0, 1, 4, 5, 10, 9]),
+            surface(&[1, 2, 4, 6, 11, 10]),
+            surface(&[2, 3, 4, 7, 12, 11]),
+            surface(&[3, 0, 4, 8, 9, 12]),
+        ],
+        edges: &[
+            line(&[0, 1, 5]),
+            line(&[1, 2, 6]),
+            line(&[2, 3, 7]),
+            line(&[3, 0, 8]),
+            line(&[0, 4, 9]),
+            line(&[1, 4, 10]),
+            line(&[2, 4, 11]),
+            line(&[3, 4, 12]),
+        ],
+        default_order: 3,
+        vtk_type: 27,
+        vtk_order: same::<13>(),
+        gid_name: "Pyramid",
+    },
+    ReferenceCell {
         shape: Shape::Prism6,
         dim: 3,
         points: head::<6>(&PRISM),
@@ -278,7 +352,7 @@ pub(super) const CELLS: &[ReferenceCell; Shape::ALL.len()] = &[
     ReferenceCell {
         shape: Shape::Prism15,
         dim: 3,
-        points: &PRISM,
+        points: head::<15>(&PRISM),
         centre: [THIRD, THIRD, 0.5],
         faces: &[
             surface(&[0, 2, 1, 8, 7, 6]),
@@ -301,6 +375,34 @@ pub(super) const CELLS: &[ReferenceCell; Shape::ALL.len()] = &[
         default_order: 3,
         vtk_type: 26,
         vtk_order: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11],
+        gid_name: "Prism",
+    },
+    ReferenceCell {
+        shape: Shape::Prism18,
+        dim: 3,
+        points: &PRISM,
+        centre: [THIRD, THIRD, 0.5],
+        faces: &[
+            surface(&[0, 2, 1, 8, 7, 6]),
+            surface(&[3, 4, 5, 12, 13, 14]),
+            surface(&[0, 1, 4, 3, 6, 10, 12, 9, 15]),
+            surface(&[2, 0, 3, 5, 8, 9, 14, 11, 17]),
+            surface(&[1, 2, 5, 4, 7, 11, 13, 10, 16]),
+        ],
+        edges: &[
+            line(&[0, 1, 6]),
+            line(&[1, 2, 7]),
+            line(&[2, 0, 8]),
+            line(&[3, 4, 12]),
+            line(&[4, 5, 13]),
+            line(&[5, 3, 14]),
+            line(&[0, 3, 9]),
+            line(&[1, 4, 10]),
+            line(&[2, 5, 11]),
+        ],
+        default_order: 3,
+        vtk_type: 32,
+        vtk_order: &[0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 13, 14, 9, 10, 11, 15, 16, 17],
         gid_name: "Prism",
     },
     ReferenceCell {

@@ -2,7 +2,8 @@
 //!
 //! Lines, quadrilaterals and hexahedra: Gauss–Legendre, n points an axis, exact to degree 2n − 1 in each coordinate.
 //! Triangles: exact to degree 1, 2, 3, 4, 6; tetrahedra: 1, 2, 3, 5, 6. Prisms: n points along the height, but always
-//! the three-point rule (degree 2) in the triangle.
+//! the three-point rule (degree 2) in the triangle, with 18 nodes the six-point rule (degree 4). Pyramids: n points across and one more
+//! along the height, at most five, on the cube that collapses to the apex; exact to degree 2n − 1.
 
 use super::Shape;
 
@@ -29,7 +30,9 @@ pub fn quadrature(shape: Shape, order: usize) -> Vec<QuadraturePoint> {
         Shape::Tri3 | Shape::Tri6 => triangle(order),
         Shape::Quad4 | Shape::Quad8 | Shape::Quad9 => quadrilateral(order),
         Shape::Tet4 | Shape::Tet10 => tetrahedron(order),
+        Shape::Pyramid5 | Shape::Pyramid13 => pyramid(order),
         Shape::Prism6 | Shape::Prism15 => prism(order),
+        Shape::Prism18 => biquadratic_prism(order),
         Shape::Hex8 | Shape::Hex20 | Shape::Hex27 => hexahedron(order),
     }
 }
@@ -173,4 +176,26 @@ fn prism(order: usize) -> Vec<QuadraturePoint> {
         }));
     }
     points
+}
+
+/// Height in [0, 1]; the six points of degree 4 a layer.
+fn biquadratic_prism(order: usize) -> Vec<QuadraturePoint> {
+    let layer = |(z, w): (f64, f64)| {
+        triangle(4)
+            .into_iter()
+            .map(move |p| QuadraturePoint { xi: [p.xi[0], p.xi[1], 0.5 * (1.0 + z)], weight: p.weight * 0.5 * w })
+    };
+    legendre(order).into_iter().flat_map(layer).collect()
+}
+
+/// Layers from the base to the apex, with (1 − z)² of the area of the base.
+fn pyramid(order: usize) -> Vec<QuadraturePoint> {
+    let layer = |(z, w): (f64, f64)| {
+        let (height, rest) = (0.5 * (1.0 + z), 0.5 * (1.0 - z));
+        quadrilateral(order).into_iter().map(move |p| QuadraturePoint {
+            xi: [rest * p.xi[0], rest * p.xi[1], height],
+            weight: p.weight * rest * rest * 0.5 * w,
+        })
+    };
+    legendre((order + 1).min(MAX_ORDER)).into_iter().flat_map(layer).collect()
 }

@@ -1,7 +1,7 @@
 //! The constant facts of every reference cell: node order, faces, edges, names in other programs.
 //!
 //! Local coordinates run over [−1, 1] for lines, quadrilaterals and hexahedra, over the unit simplex for triangles and
-//! tetrahedra, and over unit triangle × [0, 1] for prisms. Corners come first, then edge middles, face middles, centre.
+//! tetrahedra, over unit triangle × [0, 1] for prisms, and over [−1, 1]² × 0 with the apex at height 1 for pyramids. Corners come first, then edge middles, face middles, centre.
 
 use super::Shape;
 
@@ -53,7 +53,10 @@ impl ReferenceCell {
             Shape::Point1 => true,
             Shape::Tri3 | Shape::Tri6 => a >= low && b >= low && a + b <= high,
             Shape::Tet4 | Shape::Tet10 => a >= low && b >= low && c >= low && a + b + c <= high,
-            Shape::Prism6 | Shape::Prism15 => a >= low && b >= low && a + b <= high && c >= low && c <= high,
+            Shape::Prism6 | Shape::Prism15 | Shape::Prism18 => {
+                a >= low && b >= low && a + b <= high && c >= low && c <= high
+            }
+            Shape::Pyramid5 | Shape::Pyramid13 => c >= low && a.abs().max(b.abs()) + c <= high,
             _ => xi[..self.dim].iter().all(|x| x.abs() <= high),
         }
     }
@@ -75,7 +78,8 @@ impl ReferenceCell {
         match self.shape {
             Shape::Point1 => 1.0,
             Shape::Line2 | Shape::Line3 => 2.0,
-            Shape::Tri3 | Shape::Tri6 | Shape::Prism6 | Shape::Prism15 => 0.5,
+            Shape::Tri3 | Shape::Tri6 | Shape::Prism6 | Shape::Prism15 | Shape::Prism18 => 0.5,
+            Shape::Pyramid5 | Shape::Pyramid13 => 4.0 / 3.0,
             Shape::Quad4 | Shape::Quad8 | Shape::Quad9 => 4.0,
             Shape::Tet4 | Shape::Tet10 => 1.0 / 6.0,
             Shape::Hex8 | Shape::Hex20 | Shape::Hex27 => 8.0,
@@ -89,7 +93,8 @@ impl ReferenceCell {
             Shape::Line2 | Shape::Line3 => 2,
             Shape::Tri3 | Shape::Tri6 => 3,
             Shape::Quad4 | Shape::Quad8 | Shape::Quad9 | Shape::Tet4 | Shape::Tet10 => 4,
-            Shape::Prism6 | Shape::Prism15 => 6,
+            Shape::Pyramid5 | Shape::Pyramid13 => 5,
+            Shape::Prism6 | Shape::Prism15 | Shape::Prism18 => 6,
             Shape::Hex8 | Shape::Hex20 | Shape::Hex27 => 8,
         }
     }

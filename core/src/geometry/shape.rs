@@ -19,8 +19,11 @@ pub enum Shape {
     Quad9,
     Tet4,
     Tet10,
+    Pyramid5,
+    Pyramid13,
     Prism6,
     Prism15,
+    Prism18,
     Hex8,
     Hex20,
     Hex27,
@@ -28,7 +31,7 @@ pub enum Shape {
 
 impl Shape {
     /// Every shape, in the order of declaration.
-    pub const ALL: [Shape; 15] = [
+    pub const ALL: [Shape; 18] = [
         Shape::Point1,
         Shape::Line2,
         Shape::Line3,
@@ -39,8 +42,11 @@ impl Shape {
         Shape::Quad9,
         Shape::Tet4,
         Shape::Tet10,
+        Shape::Pyramid5,
+        Shape::Pyramid13,
         Shape::Prism6,
         Shape::Prism15,
+        Shape::Prism18,
         Shape::Hex8,
         Shape::Hex20,
         Shape::Hex27,
@@ -60,7 +66,10 @@ impl Shape {
             (3, 4) => Shape::Tet4,
             (3, 10) => Shape::Tet10,
             (3, 6) => Shape::Prism6,
+            (3, 5) => Shape::Pyramid5,
+            (3, 13) => Shape::Pyramid13,
             (3, 15) => Shape::Prism15,
+            (3, 18) => Shape::Prism18,
             (3, 8) => Shape::Hex8,
             (3, 20) => Shape::Hex20,
             (3, 27) => Shape::Hex27,

@@ -69,3 +69,51 @@ pub(super) fn quadratic_prism<T: Real>(xi: &[T], [down, c]: [T; 2], i: usize) ->
         _ => l * next * c * 4.0,
     }
 }
+
+/// Quadratic functions of the triangle times those of the height c from 0 to 1, with down = 1 − c.
+pub(super) fn biquadratic_prism<T: Real>(xi: &[T], [down, c]: [T; 2], i: usize) -> T {
+    let (l, next) = (barycentric(xi, i % 3), barycentric(xi, (i + 1) % 3));
+    let in_triangle = if matches!(i / 3, 0 | 1 | 3) { quadratic_corner(l) } else { quadratic_middle(l, next) };
+    let along_height = match i / 3 {
+        0 | 2 => quadratic_corner(down),
+        1 | 4 => quadratic_corner(c),
+        _ => quadratic_middle(down, c),
+    };
+    in_triangle * along_height
+}
+
+/// Height below the apex at which x y/(1 − z) counts as its limit on the axis.
+const APEX: f64 = 1e-12;
+
+/// x y/(1 − z) in a pyramid, where |x| and |y| are at most 1 − z.
+fn apex_quotient<T: Real>(&[x, y, z]: &[T; 3]) -> T {
+    let rest = -z + 1.0;
+    if rest.value() < APEX { T::constant(0.0) } else { x * y / rest }
+}
+
+/// Rational functions of the pyramid: ((1 + s x)(1 + t y) − z + s t x y z/(1 − z))/4 at the base, z at the apex.
+pub(super) fn pyramid<T: Real>(node: &[f64; 3], xi: &[T; 3]) -> T {
+    let &[x, y, z] = xi;
+    if node[2] == 1.0 {
+        return z;
+    }
+    let [s, t, _] = *node;
+    ((x * s + 1.0) * (y * t + 1.0) - z + apex_quotient(xi) * z * (s * t)) * 0.25
+}
+
+/// Rational functions of the pyramid with edge middles, complete in degree 2; G. Bedrosian, Int. J. Numer. Meth. Eng. 35 (1992), 95–108.
+pub(super) fn quadratic_pyramid<T: Real>(node: &[f64; 3], xi: &[T; 3]) -> T {
+    let &[x, y, z] = xi;
+    let (rest, quotient) = (-z + 1.0, apex_quotient(xi));
+    let [s, t, height] = *node;
+    match (height, s, t) {
+        (1.0, ..) => quadratic_corner(z),
+        (0.0, 0.0, _) => (rest * rest + rest * y * t - x * x - x * quotient * t) * 0.5,
+        (0.0, _, 0.0) => (rest * rest + rest * x * s - y * y - y * quotient * s) * 0.5,
+        (0.0, ..) => pyramid(node, xi) * (x * s + y * t - 1.0),
+        _ => {
+            let [s, t] = [s.signum(), t.signum()];
+            (rest + x * s + y * t + quotient * (s * t)) * z
+        }
+    }
+}

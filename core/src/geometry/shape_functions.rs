@@ -2,7 +2,10 @@
 
 use super::Shape;
 use super::facet_shape::FacetShape;
-use super::shape_formulas::{barycentric, linear, product, quadratic, quadratic_prism, quadratic_simplex, serendipity};
+use super::shape_formulas::{
+    barycentric, biquadratic_prism, linear, product, pyramid, quadratic, quadratic_prism, quadratic_pyramid,
+    quadratic_simplex, serendipity,
+};
 use crate::scalar::{Dual, Real};
 
 /// Values of all shape functions of `shape` at `xi`, written to the first entries of `n`.
@@ -20,6 +23,9 @@ pub fn shape_functions<T: Real>(shape: Shape, xi: [T; 3], n: &mut [T]) {
         Shape::Tet10 => fill(n, |i| quadratic_simplex(cell, &xi, i)),
         Shape::Prism6 => fill(n, |i| barycentric(&[a, b], i % 3) * if i < 3 { down } else { c }),
         Shape::Prism15 => fill(n, |i| quadratic_prism(&[a, b], [down, c], i)),
+        Shape::Prism18 => fill(n, |i| biquadratic_prism(&[a, b], [down, c], i)),
+        Shape::Pyramid5 => fill(n, |i| pyramid(&cell.points[i], &xi)),
+        Shape::Pyramid13 => fill(n, |i| quadratic_pyramid(&cell.points[i], &xi)),
         Shape::Hex8 => fill(n, |i| product(&cell.points[i], &xi, linear)),
         Shape::Hex20 => fill(n, |i| serendipity(&cell.points[i], &xi)),
         Shape::Hex27 => fill(n, |i| product(&cell.points[i], &xi, quadratic)),

@@ -3,13 +3,14 @@
 use zelus_core::geometry::Shape;
 
 const SAME: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9];
+const PYRAMID13: [usize; 13] = [0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12];
 const TET10: [usize; 10] = [0, 1, 2, 3, 4, 5, 6, 7, 9, 8];
-const PRISM15: [usize; 15] = [0, 1, 2, 3, 4, 5, 6, 9, 7, 8, 10, 11, 12, 14, 13];
+const PRISM: [usize; 18] = [0, 1, 2, 3, 4, 5, 6, 9, 7, 8, 10, 11, 12, 14, 13, 15, 17, 16];
 const HEX: [usize; 27] =
     [0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 10, 12, 14, 15, 16, 18, 19, 17, 20, 21, 23, 24, 22, 25, 26];
 
 /// Types with their numbers.
-const TYPES: [(i64, Shape); 15] = [
+const TYPES: [(i64, Shape); 18] = [
     (15, Shape::Point1),
     (1, Shape::Line2),
     (8, Shape::Line3),
@@ -20,8 +21,11 @@ const TYPES: [(i64, Shape); 15] = [
     (10, Shape::Quad9),
     (4, Shape::Tet4),
     (11, Shape::Tet10),
+    (7, Shape::Pyramid5),
+    (19, Shape::Pyramid13),
     (6, Shape::Prism6),
     (18, Shape::Prism15),
+    (13, Shape::Prism18),
     (5, Shape::Hex8),
     (17, Shape::Hex20),
     (12, Shape::Hex27),
@@ -36,7 +40,9 @@ pub(super) fn of(number: i64) -> Option<(Shape, &'static [usize])> {
 fn order(shape: Shape) -> &'static [usize] {
     match shape {
         Shape::Tet10 => &TET10,
-        Shape::Prism15 => &PRISM15,
+        Shape::Pyramid13 => &PYRAMID13,
+        Shape::Prism15 => &PRISM[..15],
+        Shape::Prism18 => &PRISM,
         Shape::Hex20 => &HEX[..20],
         Shape::Hex27 => &HEX,
         _ => &SAME[..shape.nodes()],
@@ -53,8 +59,7 @@ pub(super) fn number(shape: Shape) -> (i64, Vec<usize>) {
 /// In brackets, the name of a type that is not known here.
 pub(super) fn name(number: i64) -> &'static str {
     match number {
-        7 | 14 | 19 => " (pyramids)",
-        13 => " (prisms of 18 nodes)",
+        14 => " (pyramids of 14 nodes)",
         20..=35 => " (order 3 and higher)",
         _ => "",
     }

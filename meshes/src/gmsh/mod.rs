@@ -183,7 +183,8 @@ impl Reader<'_> {
                 self.source.wrong(format!("cells of Gmsh's type {kind}{} are not known", gmsh_cells::name(kind)));
             with_remedy(
                 problem,
-                "mesh with lines, triangles, quadrilaterals, tetrahedra, prisms or hexahedra of order 1 or 2",
+                "mesh with lines, triangles, quadrilaterals, tetrahedra, pyramids, prisms or hexahedra of order 1 or 2; pyramids of order 2 \
+                 need Mesh.SecondOrderIncomplete = 1",
             )
         })
     }

@@ -33,6 +33,42 @@ def solids(order):
     gmsh.model.mesh.setOrder(order)
 
 
+def pyramids(order):
+    """A layer of hexahedra under one of tetrahedra, with pyramids between them."""
+    occ, mesh = gmsh.model.occ, gmsh.model.mesh
+    for z in (0.0, 0.5):
+        occ.addBox(0, 0, z, 1, 1, 0.5)
+    occ.fragment([(3, 1)], [(3, 2)])
+    occ.synchronize()
+    for _, face in gmsh.model.getBoundary([(3, 1)], oriented=False):
+        mesh.setTransfiniteSurface(face)
+        mesh.setRecombine(2, face)
+    for _, line in gmsh.model.getEntities(1):
+        mesh.setTransfiniteCurve(line, 3)
+    mesh.setTransfiniteVolume(1)
+    gmsh.model.addPhysicalGroup(3, [1, 2], name="Body")
+    skin = gmsh.model.getBoundary([(3, 1), (3, 2)], combined=True, oriented=False)
+    gmsh.model.addPhysicalGroup(2, [face for _, face in skin], name="Skin")
+    gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 1)
+    mesh.generate(3)
+    mesh.setOrder(order)
+
+
+def prisms():
+    """An oblique block of prisms of 18 nodes."""
+    occ = gmsh.model.occ
+    face = occ.addRectangle(0, 0, 0, 1, 1)
+    occ.extrude([(2, face)], 0.2, 0, 0.8, numElements=[2], recombine=True)
+    occ.synchronize()
+    for _, line in gmsh.model.getEntities(1):
+        gmsh.model.mesh.setTransfiniteCurve(line, 3)
+    gmsh.model.addPhysicalGroup(3, [1], name="Body")
+    gmsh.model.addPhysicalGroup(2, [tag for _, tag in gmsh.model.getEntities(2)], name="Skin")
+    gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 0)
+    gmsh.model.mesh.generate(3)
+    gmsh.model.mesh.setOrder(2)
+
+
 def disc():
     """A disc of radius 1 in quadrilaterals of nine nodes and triangles of six, without groups."""
     occ = gmsh.model.occ
@@ -62,6 +98,17 @@ def save(name, make):
     gmsh.finalize()
 
 
+def save_one(name, make):
+    gmsh.initialize()
+    gmsh.option.setNumber("General.Terminal", 0)
+    make()
+    gmsh.write(f"{name}.msh")
+    gmsh.finalize()
+
+
 save("solids_1", lambda: solids(1))
 save("solids_2", lambda: solids(2))
 save("disc", disc)
+save_one("pyramids_1", lambda: pyramids(1))
+save_one("pyramids_2", lambda: pyramids(2))
+save_one("prisms_18", prisms)

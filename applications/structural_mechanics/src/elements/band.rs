@@ -21,6 +21,7 @@ pub(super) fn width(rule: &ShapeTable, x: &[[f64; 3]], as_kratos: bool) -> f64 {
     }
     let share = match linear {
         Shape::Tri3 | Shape::Prism6 => 2.0,
+        Shape::Pyramid5 => 3.0,
         Shape::Tet4 => 6.0,
         _ => 1.0,
     };

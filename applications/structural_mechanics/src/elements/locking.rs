@@ -22,7 +22,8 @@ fn second_order(shape: Shape) -> &'static [Shape] {
         Shape::Tri3 => &[Shape::Tri6],
         Shape::Quad4 => &[Shape::Quad8, Shape::Quad9],
         Shape::Tet4 => &[Shape::Tet10],
-        Shape::Prism6 => &[Shape::Prism15],
+        Shape::Pyramid5 => &[Shape::Pyramid13],
+        Shape::Prism6 => &[Shape::Prism15, Shape::Prism18],
         Shape::Hex8 => &[Shape::Hex20, Shape::Hex27],
         _ => &[],
     }

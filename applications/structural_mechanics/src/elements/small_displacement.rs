@@ -18,4 +18,4 @@ register_solids! { "SmallDisplacementElement", SmallDisplacement, 3,
 
 register_solids! { "SmallDisplacementElement", SmallDisplacement, 6,
 "Solid for small displacements", "∫ δε : σ dV, ε = sym ∇u";
-3: "3D4N" 4, "3D6N" 6, "3D8N" 8, "3D10N" 10, "3D15N" 15, "3D20N" 20, "3D27N" 27 }
+3: "3D4N" 4, "3D5N" 5, "3D6N" 6, "3D8N" 8, "3D10N" 10, "3D13N" 13, "3D15N" 15, "3D18N" 18, "3D20N" 20, "3D27N" 27 }

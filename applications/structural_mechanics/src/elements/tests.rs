@@ -5,8 +5,18 @@ use zelus_core::model::EntityRole;
 use crate::test_model::{Random, Single, Vec3, near, size};
 
 const PLANE: [(&str, usize); 5] = [("2D3N", 3), ("2D4N", 4), ("2D6N", 6), ("2D8N", 8), ("2D9N", 9)];
-const SOLID: [(&str, usize); 7] =
-    [("3D4N", 4), ("3D6N", 6), ("3D8N", 8), ("3D10N", 10), ("3D15N", 15), ("3D20N", 20), ("3D27N", 27)];
+const SOLID: [(&str, usize); 10] = [
+    ("3D4N", 4),
+    ("3D5N", 5),
+    ("3D6N", 6),
+    ("3D8N", 8),
+    ("3D10N", 10),
+    ("3D13N", 13),
+    ("3D15N", 15),
+    ("3D18N", 18),
+    ("3D20N", 20),
+    ("3D27N", 27),
+];
 const FORMULATIONS: [&str; 3] = ["SmallDisplacementElement", "TotalLagrangianElement", "UpdatedLagrangianElement"];
 const LAWS: [&str; 3] = ["LinearElastic", "KirchhoffSaintVenant", "HyperElastic"];
 const MATERIAL: [(&str, f64); 3] = [("YOUNG_MODULUS", 100.0), ("POISSON_RATIO", 0.3), ("THICKNESS", 0.5)];
@@ -50,7 +60,9 @@ fn tangents_match_differences() {
         let x = random.cell(shape, 0.05, space);
         // J = det(1 + ε) and C = 1 + 2ε do not fit together, so this tangent is not symmetric
         let curved = formulation == "SmallDisplacementElement" && law.starts_with("HyperElastic");
-        let u: Vec<Vec3> = x.iter().map(|_| random.vector(0.05, space)).collect();
+        // The edges of a pyramid of second order are short towards its apex.
+        let amount = if shape == Shape::Pyramid13 { 0.02 } else { 0.05 };
+        let u: Vec<Vec3> = x.iter().map(|_| random.vector(amount, space)).collect();
         let mut single = element(&name, &law, &x);
         single.displace(&u);
         let (k, rhs) = single.system();
