@@ -41,7 +41,7 @@ impl Grid {
         for index in 0..count(0) * count(1) * count(2) {
             let base = [index % count(0), index / count(0) % count(1), index / count(0) / count(1)];
             // Pyramids of neighbours are mirror images, so that their faces meet.
-            let mirrored = if corners == 5 { (0..3).map(|a| base[a] % 2 << a).sum() } else { 0_usize };
+            let mirrored = if corners == 5 { (0..3).map(|a| (base[a] % 2) << a).sum() } else { 0_usize };
             for mut piece in pieces(corners, dim) {
                 if mirrored.count_ones() % 2 == 1 {
                     piece.swap(1, 3);
