@@ -1,6 +1,6 @@
 //! `zelus run DECK --sweep TABLE`: a parametric study, each row of a table a run in a folder of its own.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::sync::Mutex;
@@ -26,7 +26,7 @@ const LOG: &str = "log.txt";
 const ROW: &str = "row.json";
 
 /// Largest results that the table on the terminal shows.
-const LOOKED_AT: [&str; 3] = ["DISPLACEMENT", "CONTACT_PRESSURE", "TEMPERATURE"];
+const LOOKED_AT: [&str; 4] = ["DISPLACEMENT", "VON_MISES_STRESS", "CONTACT_PRESSURE", "TEMPERATURE"];
 
 /// The study: its arguments, table and folder.
 struct Sweep<'a> {
@@ -221,8 +221,12 @@ impl Sweep<'_> {
             Column::of_report("warnings", |report| report.warnings.len().to_string()),
             Column::of_report("seconds", |report| format!("{:.3}", seconds(report))),
         ]);
-        columns.extend(largest(done).into_iter().map(|name| {
+        columns.extend(names(done, |report| &report.largest).into_iter().map(|name| {
             Column::of_report(format!("largest {name}"), move |report| number(report.largest.get(&name).copied()))
+        }));
+        let smallest = names(done, |report| &report.smallest);
+        columns.extend(smallest.into_iter().map(|name| {
+            Column::of_report(format!("smallest {name}"), move |report| number(report.smallest.get(&name).copied()))
         }));
         for (pair, axis) in pairs(done).iter().flat_map(|pair| (0..3).map(move |axis| (pair.clone(), axis))) {
             let head = format!("force {} on {pair}", ["x", "y", "z"][axis]);
@@ -251,7 +255,7 @@ impl Sweep<'_> {
             Column::of_report("iterations", |report| report.iterations.to_string()),
             Column::of_report("seconds", |report| format!("{:.2}", seconds(report))),
         ]);
-        let known = largest(done);
+        let known = names(done, |report| &report.largest);
         for name in LOOKED_AT.into_iter().filter(|name| known.contains(*name)) {
             columns.push(Column::of_report(name, move |report| size(report.largest.get(name).copied())));
         }
@@ -292,9 +296,9 @@ fn table(columns: &[Column<'_>], done: &[RowEnd]) -> Table {
     }
 }
 
-/// Names of the largest results of all runs.
-fn largest(done: &[RowEnd]) -> BTreeSet<String> {
-    done.iter().filter_map(|row| row.report.as_ref()).flat_map(|report| report.largest.keys().cloned()).collect()
+/// Names of the extremes of all runs.
+fn names(done: &[RowEnd], of: fn(&RunReport) -> &BTreeMap<String, f64>) -> BTreeSet<String> {
+    done.iter().filter_map(|row| row.report.as_ref()).flat_map(|report| of(report).keys().cloned()).collect()
 }
 
 /// Names of the pairs of all runs.

@@ -16,4 +16,5 @@ mod periodic;
 mod plastic;
 mod resultants;
 mod springs;
+mod stress_results;
 mod supports;

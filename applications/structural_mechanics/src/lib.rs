@@ -6,6 +6,7 @@
 pub mod variables;
 pub mod tensor;
 pub mod laws;
+pub mod stress_invariant;
 pub mod elements;
 pub mod conditions;
 mod processes;

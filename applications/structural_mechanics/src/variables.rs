@@ -114,6 +114,12 @@ register_variable! {
     kind ALMANSI_STRAIN_TENSOR: Matrix = "Almansi strain as a square matrix.";
     kind DEFORMATION_GRADIENT: Matrix = "Deformation gradient ∂x/∂X.";
     kind VON_MISES_STRESS: Scalar = "Equivalent stress of von Mises (force per area).";
+    kind PRINCIPAL_CAUCHY_STRESS_VECTOR: Vector = "Principal Cauchy stresses, largest first (force per area).";
+    kind MAX_PRINCIPAL_STRESS: Scalar = "Largest principal Cauchy stress, positive in tension (force per area).";
+    kind MIN_PRINCIPAL_STRESS: Scalar = "Smallest principal Cauchy stress, negative in compression (force per area).";
+    kind TRESCA_STRESS: Scalar = "Equivalent stress of Tresca: largest less smallest principal Cauchy stress (force per area).";
+    kind HYDROSTATIC_PRESSURE: Scalar = "Minus the mean of the principal Cauchy stresses, positive in compression (force per area).";
+    kind SAFETY_FACTOR: Scalar = "Safety factor to yield: YIELD_STRESS over VON_MISES_STRESS, at most 1000; of materials with YIELD_STRESS.";
     kind STRAIN_ENERGY: Scalar = "Stored energy per initial volume.";
     kind INTEGRATION_WEIGHT: Scalar = "Part of the initial volume that a Gauss point stands for.";
 }
@@ -123,7 +129,9 @@ register_material_range! { "[0, inf)": ["DENSITY", "RAYLEIGH_ALPHA", "RAYLEIGH_B
 
 register_usual_results! {
     values: [],
-    gauss: ["CAUCHY_STRESS_VECTOR", "VON_MISES_STRESS", "GREEN_LAGRANGE_STRAIN_VECTOR"]
+    gauss: ["CAUCHY_STRESS_VECTOR", "VON_MISES_STRESS", "GREEN_LAGRANGE_STRAIN_VECTOR"],
+    largest: ["VON_MISES_STRESS", "MAX_PRINCIPAL_STRESS", "TRESCA_STRESS", "HYDROSTATIC_PRESSURE"],
+    smallest: ["MIN_PRINCIPAL_STRESS", "SAFETY_FACTOR"]
 }
 
 register_rates! { "DISPLACEMENT",

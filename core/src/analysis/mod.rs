@@ -39,7 +39,7 @@ mod unused_settings;
 pub use cutting::Cutting;
 pub use driver::{Driver, LoopPoint, Unattended};
 pub use mesh::{DeckMesh, read_deck_mesh};
-pub use report::{RunReport, Sizes};
+pub use report::{Body, NodePlace, RunReport, Sizes};
 pub use simulation::{RunOptions, Simulation};
 pub use solver::{
     ExtensionDefinition, NodalVariable, SolverDefinition, SolverEntry, SolverExtensionEntry, SolverSettings,

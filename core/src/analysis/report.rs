@@ -6,10 +6,15 @@ use std::path::PathBuf;
 use serde::{Deserialize, Serialize};
 
 use crate::diagnostics::Error;
-use crate::strategies::StepRecord;
+use crate::model::{ModelPart, NumberedBodies};
+use crate::processes::{Extreme, Extremes};
+use crate::strategies::{Balance, StepRecord, SupportReaction, body_of};
 
 /// Most steps of which records are kept.
 const MOST_RECORDS: usize = 10_000;
+
+/// Most bodies that a report names.
+const MOST_BODIES: usize = 100;
 
 /// Sizes of a problem.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -24,6 +29,40 @@ pub struct Sizes {
     pub constraints: usize,
     /// Unknowns, fixed ones included.
     pub unknowns: usize,
+}
+
+/// A node with its initial position.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct NodePlace {
+    /// Id of the node.
+    pub node: usize,
+    /// Initial position.
+    pub position: [f64; 3],
+}
+
+/// A body of connected elements.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Body {
+    /// Smallest id of its nodes.
+    pub node: usize,
+    /// Its smallest sub model part with elements; empty where there is none.
+    pub name: String,
+}
+
+impl Body {
+    /// The bodies of a part, none where there are more than a reader would tell apart; collective.
+    pub(crate) fn all(part: &ModelPart) -> Vec<Self> {
+        let bodies = NumberedBodies::of(part).first;
+        if bodies.len() > MOST_BODIES {
+            return Vec::new();
+        }
+        let named = |node: usize| {
+            let own = part.nodes.find(node).filter(|&node| part.owns_node(node as usize));
+            let name = own.and_then(|node| body_of(&part.tree, node)).map(str::to_owned);
+            Self { node, name: part.ranks.first_to_say(name).unwrap_or_default() }
+        };
+        bodies.into_iter().map(named).collect()
+    }
 }
 
 /// Report of a run, as written by `--report`.
@@ -75,10 +114,19 @@ pub struct RunReport {
     /// Files that were read: deck, mesh, materials, tables; of the last stage.
     #[serde(default)]
     pub inputs: Vec<PathBuf>,
-    /// The largest absolute nodal value of each default output variable, by name: unknowns, reactions, contact results; at the end of a
-    /// run that came to it.
+    /// The largest size at a node of each default output variable, by name: unknowns, reactions, contact results, and the largest
+    /// value of scalars of the stress; at the end of a run that came to it.
     #[serde(default)]
     pub largest: BTreeMap<String, f64>,
+    /// The smallest value at a node of scalars of the stress, by name: smallest principal stress, safety factor.
+    #[serde(default)]
+    pub smallest: BTreeMap<String, f64>,
+    /// Nodes of these values, by name.
+    #[serde(default)]
+    pub places: BTreeMap<String, NodePlace>,
+    /// Bodies of connected elements, of at most 100.
+    #[serde(default)]
+    pub bodies: Vec<Body>,
     /// Whether every step converged.
     pub converged: bool,
 }
@@ -109,6 +157,9 @@ impl Default for RunReport {
             outputs: Vec::new(),
             inputs: Vec::new(),
             largest: BTreeMap::new(),
+            smallest: BTreeMap::new(),
+            places: BTreeMap::new(),
+            bodies: Vec::new(),
             converged: false,
         }
     }
@@ -140,6 +191,23 @@ impl RunReport {
         if let Some(last) = self.steps.last_mut() {
             last.interactions.extend(numbers.into_iter().map(|(name, value)| (name.to_owned(), value)));
         }
+    }
+
+    /// Adds the reactions by support to the balance of the last step, where it has one.
+    pub(crate) fn add_supports(&mut self, of: impl FnOnce(&Balance) -> Vec<SupportReaction>) {
+        if let Some(balance) = self.steps.last_mut().and_then(|last| last.balance.as_mut()) {
+            balance.supports = of(balance);
+        }
+    }
+
+    /// Puts down the extremes of the results.
+    pub(crate) fn tell_extremes(&mut self, extremes: &Extremes) {
+        let values =
+            |all: &BTreeMap<String, Extreme>| all.iter().map(|(name, own)| (name.clone(), own.value)).collect();
+        (self.largest, self.smallest) = (values(&extremes.largest), values(&extremes.smallest));
+        let all = extremes.largest.iter().chain(&extremes.smallest);
+        self.places =
+            all.map(|(name, own)| (name.clone(), NodePlace { node: own.node, position: own.place })).collect();
     }
 
     /// Whether the records of a step stay.

@@ -216,7 +216,7 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
     }
 
     /// Names that [`Kernel::gauss`] answers.
-    fn gauss_variables() -> &'static [&'static str] {
+    fn gauss_variables(&self) -> &'static [&'static str] {
         &[]
     }
 
@@ -537,7 +537,7 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
     }
 
     fn gauss_variables(&self) -> &'static [&'static str] {
-        K::gauss_variables()
+        self.kernel.gauss_variables()
     }
 
     fn warnings(&self) -> &[Diagnostic] {

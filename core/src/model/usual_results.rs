@@ -6,6 +6,10 @@ pub struct UsualResults {
     pub values: &'static [&'static str],
     /// Quantities at Gauss points, written at nodes where an element knows them.
     pub gauss: &'static [&'static str],
+    /// Numbers at Gauss points of which a report tells the largest nodal value, with its sign.
+    pub largest: &'static [&'static str],
+    /// The same of the smallest one.
+    pub smallest: &'static [&'static str],
 }
 
 inventory::collect!(UsualResults);
@@ -19,6 +23,16 @@ impl UsualResults {
     /// Quantities at Gauss points of all applications, sorted.
     pub fn gauss() -> Vec<&'static str> {
         Self::sorted(|own| own.gauss)
+    }
+
+    /// Numbers at Gauss points whose largest nodal value a report tells, of all applications, sorted.
+    pub fn largest() -> Vec<&'static str> {
+        Self::sorted(|own| own.largest)
+    }
+
+    /// Numbers at Gauss points whose smallest nodal value a report tells, of all applications, sorted.
+    pub fn smallest() -> Vec<&'static str> {
+        Self::sorted(|own| own.smallest)
     }
 
     fn sorted(of: fn(&Self) -> &'static [&'static str]) -> Vec<&'static str> {
@@ -39,7 +53,14 @@ impl UsualResults {
 /// ```
 #[macro_export]
 macro_rules! register_usual_results {
-    (values: [$($value:literal),*], gauss: [$($gauss:literal),*]) => {
-        $crate::inventory::submit! { $crate::model::UsualResults { values: &[$($value),*], gauss: &[$($gauss),*] } }
+    (values: [$($value:literal),*], gauss: [$($gauss:literal),*] $(, largest: [$($largest:literal),*], smallest: [$($smallest:literal),*])?) => {
+        $crate::inventory::submit! {
+            $crate::model::UsualResults {
+                values: &[$($value),*],
+                gauss: &[$($gauss),*],
+                largest: &[$($($largest),*)?],
+                smallest: &[$($($smallest),*)?],
+            }
+        }
     };
 }

@@ -225,6 +225,7 @@ impl Process for AssignToNodes {
             };
             Prescription {
                 by: format!("{} on {}", self.target.process, self.target.path),
+                part: self.target.path.clone(),
                 variable: component.variable,
                 values: selection.nodes.iter().map(value).collect(),
             }

@@ -204,9 +204,10 @@ impl Process for DirectionalSupports {
         }
         let of_component = |c: u8| {
             let values = self.components(part, time, c).into_iter().map(|(node, value)| (node, Some(value))).collect();
-            Prescription { by: self.by(), variable: self.variable(c), values }
+            Prescription { by: self.by(), part: self.target.path.clone(), variable: self.variable(c), values }
         };
-        (0..3).map(of_component).filter(|own| !own.values.is_empty()).collect()
+        // Also without nodes here: ranks list the same supports.
+        (0..3).map(of_component).collect()
     }
 
     fn prescribes_along(&self, part: &ModelPart, time: f64) -> Option<DirectionalPrescription> {

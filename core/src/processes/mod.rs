@@ -41,7 +41,7 @@ pub use directional_supports::DirectionalSupports;
 pub(crate) use directional_supports::conflict;
 pub use local_axes::LocalAxes;
 pub use output::{
-    OutputFormat, OutputFormatEntry, OutputFormatFactory, OutputFrame, SurfaceFrame, largest_results, usual_results,
+    Extreme, Extremes, OutputFormat, OutputFormatEntry, OutputFormatFactory, OutputFrame, SurfaceFrame, usual_results,
 };
 pub(crate) use prescription::is_body_load;
 pub use prescription::{DirectionalPrescription, Load, LoadCarrier, Prescription};

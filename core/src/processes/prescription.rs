@@ -11,6 +11,8 @@ use crate::registry;
 pub struct Prescription {
     /// The process and its part, for messages.
     pub by: String,
+    /// Full dotted path of the part.
+    pub part: String,
     /// The unknown.
     pub variable: ScalarVariable,
     /// Nodes (index); the value, `None` where the unknown stays as it is.

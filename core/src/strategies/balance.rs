@@ -13,6 +13,9 @@ pub struct Balance {
     pub pairs: Vec<PairBalance>,
     /// Energies since the stage began.
     pub energies: Energies,
+    /// Reactions by support, in the order of the deck.
+    #[serde(default)]
+    pub supports: Vec<SupportReaction>,
 }
 
 /// Sums of forces on one unknown, over all nodes: loads + elements + interactions + inertia + reactions = 0 but for the out-of-balance
@@ -89,6 +92,19 @@ pub struct PairBalance {
     pub penetration_node: Option<usize>,
     /// Energy that friction has turned into heat since the stage began.
     pub dissipated: f64,
+}
+
+/// Reaction of the unknowns that processes fix on one part.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct SupportReaction {
+    /// Full dotted path of the part.
+    pub part: String,
+    /// The unknown, e.g. DISPLACEMENT.
+    pub unknown: String,
+    /// Sum over its fixed components; a component that several supports fix at a node counts for the last one, whose value holds.
+    pub reaction: [f64; 3],
+    /// Its moment about the centre of the balance, in the present configuration; zero for unknowns that move nothing.
+    pub moment: [f64; 3],
 }
 
 /// Energies since the stage began, of unknowns that have inertia; works by the trapezoidal rule over steps.

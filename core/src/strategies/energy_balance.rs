@@ -79,6 +79,7 @@ impl EnergyBalance {
                 dissipated: pending.dissipated.iter().sum(),
                 kinetic,
             },
+            supports: Vec::new(),
         };
         self.pending = Some(pending);
         Ok(balance)

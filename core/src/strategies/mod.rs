@@ -46,7 +46,7 @@ mod strategy_entry;
 mod location;
 
 pub use arc_length::{ArcLength, ArcLengthSettings};
-pub use balance::{Balance, BalanceTerms, Energies, Flows, PairBalance, UnknownBalance};
+pub use balance::{Balance, BalanceTerms, Energies, Flows, PairBalance, SupportReaction, UnknownBalance};
 pub use bdf_scheme::BdfScheme;
 pub use body_balance::BodyBalance;
 pub use bossak_scheme::BossakScheme;
@@ -66,7 +66,7 @@ pub use linear_solvers::{LinearSolverEntry, LinearSolverFactory, LinearSolverReq
 pub(crate) use linear_solvers::{
     frugal as frugal_linear_solver, make as make_linear_solver, tolerance as linear_tolerance, unknowns_of_all,
 };
-pub(crate) use location::{body_in_words, location};
+pub(crate) use location::{body_in_words, body_of, location};
 pub use measure::{Form, Measure, Tolerance};
 pub(crate) use newton::ONLY_CONTACT_RESTRAINS;
 pub use newton::{ENERGY_OF_MOTION, NewtonRaphson, NewtonSettings};

@@ -22,6 +22,8 @@ pub(super) struct Material<const S: usize> {
     pub(super) density: f64,
     /// Thickness of planar elements; 1 for all others.
     pub(super) thickness: f64,
+    /// YIELD_STRESS of the properties, or YIELD_STRESS_TENSION.
+    pub(super) yield_stress: Option<f64>,
     /// VOLUME_ACCELERATION of the properties.
     pub(super) acceleration: [f64; 3],
     /// COMPUTE_LUMPED_MASS_MATRIX of the properties.
@@ -71,6 +73,7 @@ impl<const S: usize> Material<S> {
             law,
             density,
             thickness,
+            yield_stress: properties.number("YIELD_STRESS").or_else(|| properties.number("YIELD_STRESS_TENSION")),
             acceleration: properties.vector3("VOLUME_ACCELERATION").unwrap_or_default(),
             lumped: properties.number("COMPUTE_LUMPED_MASS_MATRIX").is_some_and(|flag| flag != 0.0),
             rule: ShapeTable::get(shape, order as usize),

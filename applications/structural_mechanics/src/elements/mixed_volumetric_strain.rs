@@ -300,8 +300,8 @@ where
         })
     }
 
-    fn gauss_variables() -> &'static [&'static str] {
-        results::VARIABLES
+    fn gauss_variables(&self) -> &'static [&'static str] {
+        results::variables(&self.materials)
     }
 
     fn assumed_small(&self, entity: &EntityView<'_, NODES>, view: &StepView<'_>) -> Option<AssumedSmall> {

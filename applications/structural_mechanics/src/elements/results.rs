@@ -1,17 +1,28 @@
 //! Results at Gauss points.
 //!
 //! Stresses follow the law (a LinearElastic law gives the same numbers for every measure). VON_MISES_STRESS is that of
-//! the stress the formulation integrates; in the plane it takes in-plane components only, as in Kratos. Cauchy stress
+//! the stress the formulation integrates; principal stresses, TRESCA_STRESS and HYDROSTATIC_PRESSURE are those of the Cauchy stress. In the
+//! plane all of them take in-plane components only, as VON_MISES_STRESS does in Kratos, and 0 across the plane. Cauchy stress
 //! and strains of axisymmetric elements have two zeros appended, as in Kratos.
 
 use zelus_core::entities::Gauss;
 
 use super::material::Material;
 use crate::laws::{ConstitutiveLaw, PLASTIC_WORK, StrainState, StressMeasure};
+use crate::stress_invariant::{StressInvariant, principal_stresses};
 use crate::tensor::{Tensor, strain_tensor, stress_tensor};
 
-/// Names that the elements answer.
-pub(super) const VARIABLES: &[&str] = &[
+/// Largest safety factor, that of material without stress.
+const LARGEST_FACTOR: f64 = 1000.0;
+const SAFETY_FACTOR: &str = "SAFETY_FACTOR";
+
+/// Names that the elements answer with these materials: a safety factor where one of them has a yield stress.
+pub(super) fn variables<const S: usize>(materials: &[Material<S>]) -> &'static [&'static str] {
+    let last = VARIABLES.len() - 1;
+    if materials.iter().any(|material| material.yield_stress.is_some()) { VARIABLES } else { &VARIABLES[..last] }
+}
+
+const VARIABLES: &[&str] = &[
     "CAUCHY_STRESS_VECTOR",
     "PK2_STRESS_VECTOR",
     "KIRCHHOFF_STRESS_VECTOR",
@@ -37,6 +48,12 @@ pub(super) const VARIABLES: &[&str] = &[
     PLASTIC_WORK,
     "DAMAGE",
     "THRESHOLD",
+    "PRINCIPAL_CAUCHY_STRESS_VECTOR",
+    "MAX_PRINCIPAL_STRESS",
+    "MIN_PRINCIPAL_STRESS",
+    "TRESCA_STRESS",
+    "HYDROSTATIC_PRESSURE",
+    SAFETY_FACTOR,
 ];
 
 /// A variable at all Gauss points of one element; `None` when unknown or when the element is turned inside out.
@@ -55,6 +72,10 @@ pub(super) fn gauss<'a, const S: usize>(
         let (state, weight) = point(g)?;
         match variable {
             "INTEGRATION_WEIGHT" => out.values.push(weight * material.thickness),
+            SAFETY_FACTOR => {
+                let stress = von_mises(material.law.as_ref(), &state, measure);
+                out.values.push((material.yield_stress? / stress).min(LARGEST_FACTOR));
+            }
             _ => value(material.law.as_ref(), &state, measure, ring, variable, &mut out.values)?,
         }
         out.weights.push(weight);
@@ -76,7 +97,10 @@ fn value<const S: usize>(
     if law.internal(state, variable, out) {
         return Some(());
     }
-    if let Some(stem) = variable.strip_suffix("_STRESS_VECTOR") {
+    let cauchy = || stress_tensor(&law.stress(state, StressMeasure::Cauchy, None));
+    if variable == "PRINCIPAL_CAUCHY_STRESS_VECTOR" {
+        out.extend(principal_stresses(&cauchy()));
+    } else if let Some(stem) = variable.strip_suffix("_STRESS_VECTOR") {
         vector(&stress(law, state, stem)?, ring, out);
     } else if let Some(stem) = variable.strip_suffix("_STRESS_TENSOR") {
         tensor::<S>(&stress_tensor(&stress(law, state, stem)?), out);
@@ -89,8 +113,8 @@ fn value<const S: usize>(
             "STRAIN" => vector(&state.strain, ring, out),
             "DEFORMATION_GRADIENT" => tensor::<S>(&state.f, out),
             "STRAIN_ENERGY" => out.push(law.energy(state)),
-            "VON_MISES_STRESS" => out.push(von_mises(&law.stress(state, measure, None))),
-            _ => return None,
+            "VON_MISES_STRESS" => out.push(von_mises(law, state, measure)),
+            _ => out.push(StressInvariant::named(variable)?.of(&cauchy())),
         }
     }
     Some(())
@@ -128,9 +152,6 @@ fn tensor<const S: usize>(values: &Tensor, out: &mut Vec<f64>) {
     (0..dim).for_each(|i| out.extend((0..dim).map(|j| values[(i, j)])));
 }
 
-fn von_mises<const S: usize>(stress: &[f64; S]) -> f64 {
-    let t = stress_tensor(stress);
-    // with s_zz = 0 this is the plane formula sqrt(sx² − sx sy + sy² + 3 txy²)
-    let normal = (t[(0, 0)] - t[(1, 1)]).powi(2) + (t[(1, 1)] - t[(2, 2)]).powi(2) + (t[(2, 2)] - t[(0, 0)]).powi(2);
-    (0.5 * normal + 3.0 * (t[(0, 1)].powi(2) + t[(1, 2)].powi(2) + t[(0, 2)].powi(2))).sqrt()
+fn von_mises<const S: usize>(law: &dyn ConstitutiveLaw<S>, state: &StrainState<'_, S>, measure: StressMeasure) -> f64 {
+    StressInvariant::VonMises.of(&stress_tensor(&law.stress(state, measure, None)))
 }

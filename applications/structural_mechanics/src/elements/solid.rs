@@ -296,8 +296,8 @@ where
         })
     }
 
-    fn gauss_variables() -> &'static [&'static str] {
-        results::VARIABLES
+    fn gauss_variables(&self) -> &'static [&'static str] {
+        results::variables(&self.materials)
     }
 
     fn warnings(request: &BlockRequest<'_>) -> Vec<Diagnostic> {

@@ -15,7 +15,7 @@ pub enum EquivalentStress {
 
 impl EquivalentStress {
     /// The equivalent stress and its derivative with respect to the tensor; where principal stresses are equal, that of one side.
-    pub(super) fn of(self, stress: &Tensor) -> (f64, Tensor) {
+    pub(crate) fn of(self, stress: &Tensor) -> (f64, Tensor) {
         if self == Self::VonMises {
             let s = deviator(stress);
             let q = 1.5_f64.sqrt() * s.norm();

@@ -289,7 +289,8 @@ impl Process for BoltPretension {
             _ => None,
         };
         let by = format!("{} on {}", self.target.process, self.target.path);
-        vec![Prescription { by, variable: self.unknown(), values: vec![(self.reference, value)] }]
+        let part = self.target.path.clone();
+        vec![Prescription { by, part, variable: self.unknown(), values: vec![(self.reference, value)] }]
     }
 
     fn drives(&self, part: &ModelPart, _system: &System) -> bool {

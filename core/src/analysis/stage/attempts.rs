@@ -5,6 +5,7 @@ use std::time::Instant;
 use super::super::cutting::{Cutting, Lengths};
 use super::super::driver::LoopPoint;
 use super::super::step_backup::StepBackup;
+use super::support_reactions::support_reactions;
 use super::{RunContext, Stage};
 use crate::assembly::System;
 use crate::diagnostics::{Error, Result};
@@ -137,6 +138,8 @@ impl Stage {
         let start = Instant::now();
         let ranks = run.model.ranks.clone();
         let Self { processes, system, root, .. } = self;
+        let part = run.model.root(root)?;
+        run.report.add_supports(|balance| support_reactions(part, processes, balance));
         run.driver.at(LoopPoint::EndStep, root, run.model, system, &mut |model| {
             processes.iter_mut().try_for_each(|process| ranks.agree(process.end_step(model, system)))
         })?;

@@ -14,6 +14,7 @@ mod request;
 mod run_context;
 mod schedule;
 mod shared_stage;
+mod support_reactions;
 
 use std::path::PathBuf;
 use std::time::Instant;
@@ -21,14 +22,14 @@ use std::time::Instant;
 use super::contents::Contents;
 use super::driver::{Driver, LoopPoint};
 use super::large_motion::LargeMotion;
-use super::report::RunReport;
+use super::report::{Body, RunReport};
 use super::saved_run::{SavedStage, resume_blocks, resume_each, states_of};
 use crate::assembly::System;
 use crate::communication::Ranks;
 use crate::diagnostics::{Diagnostic, Report, Result, unfit};
 use crate::io::{Claim, FileUse};
 use crate::model::Model;
-use crate::processes::{Process, largest_results};
+use crate::processes::{Extremes, Process};
 use crate::strategies::{ONLY_CONTACT_RESTRAINS, Plan, SolutionStrategy};
 
 use self::built_stage::BuiltStage;
@@ -271,7 +272,8 @@ impl Stage {
         report.add_seconds("assemble: elements", assembly.bulk);
         report.add_seconds("assemble: interactions", assembly.coupling);
         let part = model.parts.get(&self.root).filter(|_| result.is_ok());
-        report.largest = part.map(largest_results).unwrap_or_default();
+        report.tell_extremes(&part.map(|part| Extremes::of(part, &self.system)).unwrap_or_default());
+        report.bodies = part.map(Body::all).unwrap_or_default();
         systems.insert(self.root, System { elements: self.system.elements, ..System::default() });
         result.and(finalized).and(finals.finish().map(|_| ()))
     }

@@ -108,6 +108,68 @@ pub(super) enum GaussWeight {
     Point,
 }
 
+/// Sums over the Gauss points around each node, over all ranks.
+struct NodalSums {
+    components: usize,
+    /// Σ w J |N_i| v, a row a node.
+    values: Vec<f64>,
+    /// Σ w J |N_i|.
+    weights: Vec<f64>,
+}
+
+impl NodalSums {
+    /// The sums over the selected entities that are active; collective.
+    fn of(
+        part: &ModelPart,
+        system: &System,
+        kind: EntityRole,
+        selected: &[u32],
+        quantity: &GaussQuantity,
+        share: GaussWeight,
+    ) -> Self {
+        let mut components = 0;
+        let mut sums: Vec<f64> = Vec::new();
+        let mut weights = vec![0.0; part.nodes.len()];
+        visit(part, system, kind, selected, quantity, |_, seen, gauss| {
+            if !seen.is_active {
+                return;
+            }
+            if gauss.components > components {
+                let wider = widen(&sums, components, gauss.components, part.nodes.len());
+                (sums, components) = (wider, gauss.components);
+            }
+            let own = seen.nodes;
+            for (point, weight) in gauss.weights.iter().enumerate() {
+                let values = &gauss.values[point * gauss.components..][..gauss.components];
+                for (&node, shape) in own.iter().zip(&gauss.shape[point * own.len()..]) {
+                    let share = if share == GaussWeight::Volume { weight * shape.abs() } else { shape.abs() };
+                    weights[node as usize] += share;
+                    let sum = &mut sums[node as usize * components..][..gauss.components];
+                    sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
+                }
+            }
+        });
+        let most = widest(&part.ranks, components);
+        let mut values = widen(&sums, components, most, part.nodes.len());
+        let components = most;
+        if let Some(halo) = part.share.as_ref().map(|share| &share.halo) {
+            halo.sum(&mut weights);
+            let at = |node: u32, out: &mut Vec<u32>| {
+                out.extend((0..components as u32).map(|c| node * components as u32 + c))
+            };
+            halo.expand(at).sum(&mut values);
+        }
+        Self { components, values, weights }
+    }
+
+    /// The mean of the values around a node; nothing where there are none.
+    fn mean(&self, node: usize) -> Option<impl Iterator<Item = f64> + '_> {
+        let weight = self.weights[node];
+        let row = &self.values[node * self.components..][..self.components];
+        (weight > 0.0).then(|| row.iter().map(move |sum| sum / weight))
+    }
+}
+
 /// One value a node: Σ w J |N_i| v / Σ w J |N_i| over the Gauss points of the active entities around it, or without w J.
 /// Collective.
 pub(super) fn at_nodes(
@@ -119,45 +181,29 @@ pub(super) fn at_nodes(
     quantity: &GaussQuantity,
     share: GaussWeight,
 ) -> Column {
-    let mut components = 0;
-    let mut sums: Vec<f64> = Vec::new();
-    let mut weights = vec![0.0; part.nodes.len()];
-    visit(part, system, kind, selected, quantity, |_, seen, gauss| {
-        if !seen.is_active {
-            return;
-        }
-        if gauss.components > components {
-            let wider = widen(&sums, components, gauss.components, part.nodes.len());
-            (sums, components) = (wider, gauss.components);
-        }
-        let own = seen.nodes;
-        for (point, weight) in gauss.weights.iter().enumerate() {
-            let values = &gauss.values[point * gauss.components..][..gauss.components];
-            for (&node, shape) in own.iter().zip(&gauss.shape[point * own.len()..]) {
-                let share = if share == GaussWeight::Volume { weight * shape.abs() } else { shape.abs() };
-                weights[node as usize] += share;
-                let sum = &mut sums[node as usize * components..][..gauss.components];
-                sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += share * value);
-            }
-        }
-    });
-    let most = widest(&part.ranks, components);
-    let mut sums = widen(&sums, components, most, part.nodes.len());
-    let components = most;
-    if let Some(halo) = part.share.as_ref().map(|share| &share.halo) {
-        halo.sum(&mut weights);
-        let at =
-            |node: u32, out: &mut Vec<u32>| out.extend((0..components as u32).map(|c| node * components as u32 + c));
-        halo.expand(at).sum(&mut sums);
-    }
+    let sums = NodalSums::of(part, system, kind, selected, quantity, share);
+    let components = sums.components;
     let mut values = vec![0.0; nodes.len() * components];
     for (row, &node) in values.chunks_exact_mut(components).zip(nodes) {
-        let weight = weights[node as usize];
-        if weight > 0.0 {
-            row.iter_mut().zip(&sums[node as usize * components..]).for_each(|(value, sum)| *value = sum / weight);
-        }
+        let mean = sums.mean(node as usize);
+        row.iter_mut().zip(mean.into_iter().flatten()).for_each(|(value, mean)| *value = mean);
     }
     Column::real(&quantity.name, components, values)
+}
+
+/// A number at all nodes as [`at_nodes`] gives it by volume, `None` where no entity around a node knows it. Collective.
+pub(super) fn scalars_at_nodes(
+    part: &ModelPart,
+    system: &System,
+    kind: EntityRole,
+    quantity: &GaussQuantity,
+) -> Vec<Option<f64>> {
+    if !part.ranks.any(is_known(system, kind, quantity)) {
+        return vec![None; part.nodes.len()];
+    }
+    let all: Vec<u32> = (0..part.elements.len() as u32).collect();
+    let sums = NodalSums::of(part, system, kind, &all, quantity, GaussWeight::Volume);
+    (0..part.nodes.len()).map(|node| sums.mean(node)?.next()).collect()
 }
 
 /// The rows of a table with more columns, zeros in the new ones.

@@ -7,6 +7,7 @@
 mod compare_two_files_check_process;
 mod control;
 mod csv_points_output_process;
+mod extremes;
 mod format;
 mod from_json_check_result_process;
 mod gauss;
@@ -28,6 +29,6 @@ mod tests;
 mod usual;
 mod vtk_output_process;
 
+pub use extremes::{Extreme, Extremes};
 pub use format::{OutputFormat, OutputFormatEntry, OutputFormatFactory, OutputFrame, SurfaceFrame};
 pub use output_columns::usual_results;
-pub use usual::largest_results;

@@ -221,7 +221,7 @@ impl OutputColumns {
             ));
         }
         out.extend(self.flags.iter().map(|flag| flag_column(&part.nodes.flags, flag, &mesh.nodes)));
-        out.extend(self.ids.then(|| Column::ids("KRATOS_NODE_ID", &mesh.data.point_ids)));
+        out.extend((self.ids || self.usual).then(|| Column::ids("KRATOS_NODE_ID", &mesh.data.point_ids)));
         out
     }
 
