@@ -1,13 +1,16 @@
 //! `zelus report`: a run on one page that needs no network.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 use zelus_core::diagnostics::{Diagnostic, Place};
 use zelus_core::io::{Mark, replace_own_file};
+use zelus_core::model::variables;
 use zelus_core::{Error, Result};
 
+use super::colours::MAP;
 use super::report::{check_output, is_report};
 use super::results::find;
 use super::say::say;
@@ -15,8 +18,15 @@ use super::skin::view;
 
 const PAGE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/style.css");
-const SCRIPTS: [&str; 3] =
-    [include_str!("page/charts.js"), include_str!("page/sections.js"), include_str!("page/view.js")];
+const SCRIPTS: [&str; 7] = [
+    include_str!("page/charts.js"),
+    include_str!("page/names.js"),
+    include_str!("page/canvas.js"),
+    include_str!("page/cut.js"),
+    include_str!("page/view.js"),
+    include_str!("page/results.js"),
+    include_str!("page/sections.js"),
+];
 /// Start of every page, by which one is recognised.
 const MARK: &str = "<!doctype html>\n<!-- zelus report -->";
 
@@ -70,16 +80,32 @@ fn views(report: &Path) -> Result<(Vec<Value>, Vec<String>)> {
         }
     }
     if views.is_empty() && missing.is_empty() {
-        missing.push("no picture of the mesh: the deck has no vtu_output_process".to_owned());
+        missing.push("no picture of the mesh: the deck has no vtu_output_process; with empty lists one writes all that the page shows".to_owned());
     }
     Ok((views, missing))
 }
 
 fn page(report: &Value, views: &[Value], missing: &[String]) -> String {
     // Nothing within a text may end the script that holds it.
-    let data = json!({ "report": report, "views": views, "missing": missing }).to_string().replace("</", "<\\/");
+    let data = json!({
+        "report": report,
+        "views": views,
+        "missing": missing,
+        "colours": MAP,
+        "quantities": quantities(report, views),
+    });
+    let data = data.to_string().replace("</", "<\\/");
     let title = report["problem"].as_str().unwrap_or_default();
     let title = title.replace('&', "&amp;").replace('<', "&lt;");
     let page = PAGE.replace("{{title}}", &title).replace("{{style}}", STYLE).replace("{{scripts}}", &SCRIPTS.concat());
     format!("{MARK}\n{}", page.replace("{{data}}", &data))
+}
+
+/// Descriptions of the fields of all pictures and of the results of the report, by name.
+fn quantities(report: &Value, views: &[Value]) -> BTreeMap<String, &'static str> {
+    let fields = views.iter().filter_map(|view| view["steps"].as_array()).flatten();
+    let fields = fields.filter_map(|step| step["fields"].as_array()).flatten().filter_map(|field| field[0].as_str());
+    let results = report["largest"].as_object().into_iter().flatten().map(|(name, _)| name.as_str());
+    let known = |name: &str| Some((name.to_owned(), variables().get(name)?.about));
+    fields.chain(results).filter_map(known).collect()
 }

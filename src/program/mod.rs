@@ -1,6 +1,7 @@
 //! The program: `zelus run`, `check`, `import`, `convert`, `new`, `partition`, `diff`, `report`, `list`, `describe`.
 
 mod catalogue;
+mod colours;
 mod diff;
 mod example;
 mod html;
@@ -21,6 +22,7 @@ mod schema;
 mod skin;
 mod starter;
 mod stop;
+mod stress_columns;
 mod sweep;
 mod table;
 mod terminal;
@@ -84,7 +86,7 @@ enum Command {
     Partition(partition::PartitionArguments),
     /// Compare two result sets by node and field; exit code 0 if they are equal, 1 if not.
     Diff(diff::DiffArguments),
-    /// Write a page about a run: convergence, contact, forces, energies, times, warnings, and the mesh, to rotate and zoom.
+    /// Write a page about a run: the deformed model, largest stresses, reactions, contact forces, warnings and convergence.
     Report(html::ReportArguments),
     /// List the names that a deck may use, of all kinds or of one.
     List {

@@ -9,7 +9,8 @@ function element(name, attributes, ...children) {
 }
 
 function section(title, ...children) {
-  const made = element("section", {}, element("h2", {}, title), ...children);
+  section.count = (section.count || 0) + 1;
+  const made = element("section", { "aria-labelledby": `section-${section.count}` }, element("h2", { id: `section-${section.count}` }, title), ...children);
   document.getElementById("sections").append(made);
   return made;
 }
@@ -21,10 +22,19 @@ function number(value) {
   return Number.isInteger(value) && size < 1e9 ? String(value) : size >= 1e-3 && size < 1e6 ? String(+value.toPrecision(6)) : value.toExponential(3);
 }
 
-function table(heads, rows) {
-  const line = (cells, kind) => element("tr", {}, ...cells.map((cell) => element(kind, {}, cell instanceof Node ? cell : number(cell))));
-  const made = element("table", {}, element("thead", {}, line(heads, "th")), element("tbody", {}, ...rows.map((row) => line(row, "td"))));
-  return element("div", { class: "scroll" }, made);
+// A place, round-off beside its largest coordinate as 0.
+function placeInWords(position) {
+  const most = Math.max(...position.map(Math.abs));
+  return position.map((x) => number(Math.abs(x) < 1e-9 * most ? 0 : +x.toPrecision(5))).map(String).join(", ");
+}
+
+function table(heads, rows, caption) {
+  const cellOf = (cell, kind, scope) => element(kind, scope ? { scope } : {}, cell instanceof Node ? cell : number(cell));
+  const row = ([first, ...others]) => element("tr", {}, cellOf(first, "th", "row"), ...others.map((cell) => cellOf(cell, "td")));
+  const made = element("table", caption ? { "aria-label": caption } : {}, element("thead", {}, element("tr", {}, ...heads.map((head) => cellOf(head, "th", "col")))), element("tbody", {}, ...rows.map(row)));
+  // A table that scrolls is reached by the keyboard.
+  const scrolled = element("div", { class: "scroll", tabindex: 0, role: "region", "aria-label": caption || heads.join(", ") }, made);
+  return caption ? element("div", {}, element("p", { class: "note" }, caption), scrolled) : scrolled;
 }
 
 // Round numbers between two limits.
@@ -74,7 +84,7 @@ function chart(lines, { x, y, log = false, marks = [] }) {
     next += 40 + 7 * line.name.length;
   });
   parts.push(text((edge + width) / 2, height - 4, x, "middle"), text(4, 12, y, "start"));
-  const made = element("svg", { viewBox: `0 0 ${width} ${height}` }, ...parts);
+  const made = element("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `${y} over ${x}: ${usable.map((line) => line.name).join(", ")}` }, ...parts);
   element.within = false;
   return made;
 }

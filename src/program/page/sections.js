@@ -1,20 +1,35 @@
-// What a report says, section by section.
-const steps = report.steps, accepted = steps.filter((step) => step.converged), iterations = steps.flatMap((step) => step.iterations);
-const size = (vector) => Math.hypot(...vector);
-const balanced = accepted.filter((step) => step.balance);
+// What a report says of the course of the run, section by section.
 const overTime = (name, of) => ({ name, points: balanced.map((step) => [step.time, of(step.balance)]) });
 
-section("Run", table(["", ""], [
-  ["version", report.version], ["linear solver", report.linear_solver], ["defaults of", report.like || "zelus"],
-  ["nodes, elements, conditions", [report.sizes.nodes, report.sizes.elements, report.sizes.conditions].join(", ")],
-  ["unknowns", report.sizes.unknowns], ["threads", report.threads], ["seconds", (report.seconds || {}).total],
-  ["largest memory", report.memory ? `${(report.memory / 1e6).toFixed(1)} MB` : "unknown"],
-  ["steps that converged", accepted.length], ["attempts that failed", steps.length - accepted.length], ["iterations", iterations.length],
-  ["exit code", report.exit_code], ...Object.entries(report.parameters || {}),
-]));
+const pairs = new Map();
+for (const step of balanced) for (const pair of step.balance.pairs) (pairs.has(pair.name) ? pairs : pairs.set(pair.name, [])).get(pair.name).push([step.time, pair]);
+for (const [name, states] of pairs) {
+  const line = (label, of) => ({ name: label, points: states.map(([time, pair]) => [time, of(pair)]) });
+  section(`Contact ${name} over time`,
+    chart([line("open", (pair) => pair.open), line("sticking", (pair) => pair.sticking), line("slipping", (pair) => pair.slipping)], { x: "time", y: "slave nodes" }),
+    chart([line("force", (pair) => size(pair.force))], { x: "time", y: "size of the contact force" }),
+    chart([line("penetration", (pair) => pair.penetration)], { x: "time", y: "largest penetration" }));
+}
 
-const problems = [...(report.errors || []), ...(report.warnings || [])];
-section(`Errors and warnings (${problems.length})`, ...problems.map((words) => element("pre", words.startsWith("warning") ? {} : { class: "bad" }, words)));
+if (balanced.length) {
+  const last = balanced[balanced.length - 1];
+  for (const [at, { unknown }] of last.balance.unknowns.entries()) {
+    const line = (name, of) => overTime(name, (balance) => balance.unknowns[at] && of(balance.unknowns[at].forces));
+    const rows = ["loads", "reactions", "elements", "interactions", "inertia", "out_of_balance"].map((key) => [key.replaceAll("_", " "), ...last.balance.unknowns[at].forces[key]]);
+    const flows = last.balance.unknowns[at].flows;
+    if (flows) rows.push(...["entering", "leaving", "stored"].map((key) => [key, flows[key]]));
+    section(`Balance of ${unknown} over time`,
+      chart([line("loads", (sums) => size(sums.loads)), line("reactions", (sums) => size(sums.reactions)), line("inertia", (sums) => size(sums.inertia))], { x: "time", y: "size of the sum" }),
+      chart([line("out of balance", (sums) => sums.relative)], { x: "time", y: "by the largest sum", log: true }),
+      element("p", {}, `at time ${number(last.time)}:`), table(["sum", "x", "y", "z"], rows));
+  }
+  const kinds = Object.keys(last.balance.energies);
+  section("Energies", chart(kinds.map((kind) => overTime(kind, (balance) => balance.energies[kind])), { x: "time", y: "energy or work since the stage began" }));
+}
+
+const numbers = new Map();
+for (const step of accepted) for (const [name, value] of step.interactions) (numbers.has(name) ? numbers : numbers.set(name, [])).get(name).push([step.time, value]);
+for (const [name, points] of numbers) if (!pairs.size || name === "pairs") section(name, chart([{ name, points }], { x: "time", y: name }));
 
 {
   const lines = new Map(), marks = [];
@@ -34,35 +49,7 @@ section(`Errors and warnings (${problems.length})`, ...problems.map((words) => e
     table(["step", "time", "length", "iterations", "converged", "linear iterations"], said));
 }
 
-const pairs = new Map();
-for (const step of balanced) for (const pair of step.balance.pairs) (pairs.has(pair.name) ? pairs : pairs.set(pair.name, [])).get(pair.name).push([step.time, pair]);
-for (const [name, states] of pairs) {
-  const line = (label, of) => ({ name: label, points: states.map(([time, pair]) => [time, of(pair)]) });
-  section(`Contact ${name}`,
-    chart([line("open", (pair) => pair.open), line("sticking", (pair) => pair.sticking), line("slipping", (pair) => pair.slipping)], { x: "time", y: "slave nodes" }),
-    chart([line("force", (pair) => size(pair.force))], { x: "time", y: "size of the contact force" }),
-    chart([line("penetration", (pair) => pair.penetration)], { x: "time", y: "largest penetration" }));
-}
-
-if (balanced.length) {
-  const last = balanced[balanced.length - 1];
-  for (const [at, { unknown }] of last.balance.unknowns.entries()) {
-    const line = (name, of) => overTime(name, (balance) => balance.unknowns[at] && of(balance.unknowns[at].forces));
-    const rows = ["loads", "reactions", "elements", "interactions", "inertia", "out_of_balance"].map((key) => [key.replaceAll("_", " "), ...last.balance.unknowns[at].forces[key]]);
-    const flows = last.balance.unknowns[at].flows;
-    if (flows) rows.push(...["entering", "leaving", "stored"].map((key) => [key, flows[key]]));
-    section(`Balance of ${unknown}`,
-      chart([line("loads", (sums) => size(sums.loads)), line("reactions", (sums) => size(sums.reactions)), line("inertia", (sums) => size(sums.inertia))], { x: "time", y: "size of the sum" }),
-      chart([line("out of balance", (sums) => sums.relative)], { x: "time", y: "by the largest sum", log: true }),
-      element("p", {}, `at time ${number(last.time)}:`), table(["sum", "x", "y", "z"], rows));
-  }
-  const kinds = Object.keys(last.balance.energies);
-  section("Energies", chart(kinds.map((kind) => overTime(kind, (balance) => balance.energies[kind])), { x: "time", y: "energy or work since the stage began" }));
-}
-
-const numbers = new Map();
-for (const step of accepted) for (const [name, value] of step.interactions) (numbers.has(name) ? numbers : numbers.set(name, [])).get(name).push([step.time, value]);
-for (const [name, points] of numbers) if (!pairs.size || name === "pairs") section(name, chart([{ name, points }], { x: "time", y: name }));
+if ((report.notes || []).length) section("Notes", ...report.notes.map((words) => element("pre", {}, words)));
 
 {
   const phases = Object.entries(report.seconds || {}).filter(([name]) => name !== "total").sort((a, b) => b[1] - a[1]);
@@ -71,4 +58,20 @@ for (const [name, points] of numbers) if (!pairs.size || name === "pairs") secti
   section("Where the time went", table(["phase", "seconds", ""], phases.map(([name, seconds]) => [name, +seconds.toFixed(3), bar(seconds)])));
 }
 
-if ((report.notes || []).length) section("Notes", ...report.notes.map((words) => element("pre", {}, words)));
+section("Run", table(["fact", "value"], [
+  ["version", report.version], ["defaults of", report.like || "zelus"],
+  ["nodes, elements, conditions", [report.sizes.nodes, report.sizes.elements, report.sizes.conditions].join(", ")],
+  ["unknowns", report.sizes.unknowns], ["threads", report.threads], ["seconds", (report.seconds || {}).total],
+  ["largest memory", report.memory ? `${(report.memory / 1e6).toFixed(1)} MB` : "unknown"],
+  ["steps that converged", accepted.length], ["attempts that failed", steps.length - accepted.length], ["iterations", iterations.length],
+  ["exit code", report.exit_code], ["linear solver", report.linear_solver], ...Object.entries(report.parameters || {}),
+]));
+
+// Elements that reach beyond the window, for tests; scrolled ones stay within their holder.
+function overflowing() {
+  const wide = document.documentElement.clientWidth + 1, isScrolled = (own) => own.parentElement && own.parentElement.closest(".scroll, .picture, .bodies");
+  return [...document.body.querySelectorAll("*")].filter((own) => !isScrolled(own) && !own.classList.contains("skip") && own.getBoundingClientRect().right > wide).length;
+}
+
+root.dataset.overflow = String(document.documentElement.scrollWidth > document.documentElement.clientWidth ? 1 + overflowing() : overflowing());
+root.dataset.ready = String(document.querySelectorAll("svg").length);
