@@ -18,7 +18,7 @@ def objects(program):
     say = lambda *words: subprocess.run([program, *words], capture_output=True, text=True, check=True).stdout
     page, kind = ["# Every registered object\n", "Names that decks, meshes and materials may use, as `zelus describe NAME` prints them.\n"], ""
     shown = set()
-    for line in say("list").splitlines():
+    for line in say("list", "all").splitlines():
         if not line.startswith(" "):
             kind = line.split(" (")[0]
             page.append(f"## {kind}\n")

@@ -8,6 +8,7 @@ mod html;
 mod keys;
 mod kratos_names;
 mod log;
+mod manual;
 mod matching;
 mod meshes;
 mod partition;
@@ -26,6 +27,7 @@ mod stress_columns;
 mod sweep;
 mod table;
 mod terminal;
+mod topics;
 mod warnings;
 
 use std::io::Write;
@@ -88,9 +90,9 @@ enum Command {
     Diff(diff::DiffArguments),
     /// Write a page about a run: the deformed model, largest stresses, reactions, contact forces, warnings and convergence.
     Report(html::ReportArguments),
-    /// List the names that a deck may use, of all kinds or of one.
+    /// List the names that a deck may use: an overview, those of a kind, or those about a word.
     List {
-        /// A kind, e.g. process or condition.
+        /// A kind, e.g. process or condition; a word, e.g. contact; or all.
         kind: Option<String>,
     },
     /// Print the JSON Schema of decks or of materials files, for completion and checks in editors.
@@ -106,7 +108,7 @@ enum Command {
     },
     /// Print the manual page: zelus manual > zelus.1.
     Manual,
-    /// Describe a name: an object with its settings and source, a variable, a flag, or a key of a deck.
+    /// Describe a name: an object with its settings and source, a variable, a flag, a key of a deck, or a subject, e.g. bolt.
     Describe {
         /// The name, as a deck would write it.
         name: String,
@@ -191,10 +193,7 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
             Ok(ExitCode::SUCCESS)
         }
         Command::Manual => {
-            let mut text = Vec::new();
-            let failed = |error: std::io::Error| Error::System(format!("manual: {error}"));
-            clap_mangen::Man::new(CommandLine::command()).render(&mut text).map_err(failed)?;
-            say(String::from_utf8_lossy(&text).trim_end());
+            say(manual::manual(CommandLine::command())?.trim_end());
             Ok(ExitCode::SUCCESS)
         }
         Command::List { kind } => catalogue::list(kind.as_deref()).map(|()| ExitCode::SUCCESS),

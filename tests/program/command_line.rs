@@ -18,7 +18,7 @@ fn change(folder: &Path, find: &str, with: &str) {
 
 #[test]
 fn list_shows_what_decks_can_name() {
-    let output = zelus(&root(), &["list"]);
+    let output = zelus(&root(), &["list", "all"]);
     assert!(output.status.success(), "{}", said(&output));
     let text = String::from_utf8_lossy(&output.stdout);
     for name in
@@ -30,6 +30,67 @@ fn list_shows_what_decks_can_name() {
     assert!(output.status.success(), "{}", said(&output));
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(text.contains("alm_contact_process") && !text.contains("SmallDisplacementElement2D4N"), "{text}");
+}
+
+/// The overview fits a screen and names every kind; conditions that contact makes are one line of their kind.
+#[test]
+fn the_list_is_short_and_grouped() {
+    let list = |word: &[&str]| {
+        let output = zelus(&root(), &[&["list"], word].concat());
+        assert!(output.status.success(), "{}", said(&output));
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let (overview, all) = (list(&[]), list(&["all"]));
+    assert!(overview.lines().count() < 50 && overview.lines().all(|line| line.chars().count() < 140), "{overview}");
+    for kind in all.lines().filter(|line| !line.starts_with(' ')).filter_map(|line| line.split(" (").next()) {
+        assert!(overview.contains(&format!("\n  {kind} (")), "no {kind} in\n{overview}");
+    }
+    assert!(!overview.contains("Mortar") && all.contains("ALMFrictionalMortarContactCondition3D4N"));
+    let conditions = list(&["condition"]);
+    assert!(conditions.lines().count() < 40 && conditions.contains("SurfaceLoadCondition 3D3N, 3D4N"), "{conditions}");
+    assert!(conditions.contains("conditions of pairs of facets"), "{conditions}");
+    let contact = list(&["contact"]);
+    for word in ["docs/contact.md", "alm_contact_process", "ALMContactFrictional", "contact_residual_criterion"] {
+        assert!(contact.contains(word), "no {word} in\n{contact}");
+    }
+}
+
+#[test]
+fn subjects_lead_to_names_and_a_page() {
+    for (word, name, page) in [
+        ("bolt", "bolt_pretension_process", "docs/boundary-conditions.md#bolts"),
+        ("torque", "distribute_resultant_on_part_process", "docs/boundary-conditions.md#loads-by-resultant"),
+        ("friction", "friction_coefficients", "docs/contact.md#friction"),
+        ("Restart", "save_restart_process", "docs/restart.md"),
+        ("press-fit", "adjust_initial", "docs/contact.md#initial-gaps-and-penetration"),
+        ("springs", "GroundSpringCondition", ""),
+    ] {
+        let output = zelus(&root(), &["describe", word]);
+        assert!(output.status.success(), "{}", said(&output));
+        let text = String::from_utf8_lossy(&output.stdout);
+        assert!(text.contains(name) && text.contains(page), "{word}: {text}");
+    }
+}
+
+/// Every command with its options, as their help shows them.
+#[test]
+fn the_manual_has_the_options_of_every_command() {
+    let output = zelus(&root(), &["manual"]);
+    let manual = String::from_utf8_lossy(&output.stdout).replace("\\-", "-");
+    let help = String::from_utf8_lossy(&zelus(&root(), &["--help"]).stdout).into_owned();
+    let (_, commands) = help.split_once("Commands:\n").expect("commands");
+    let commands = commands.lines().take_while(|line| !line.is_empty());
+    let commands: Vec<&str> = commands.filter_map(|line| line.split_whitespace().next()).collect();
+    assert!(commands.len() > 10, "{commands:?}");
+    for command in commands.into_iter().filter(|command| *command != "help") {
+        let section = manual.split(".SH ").find(|own| own.starts_with(&format!("ZELUS {}\n", command.to_uppercase())));
+        let section = section.unwrap_or_else(|| panic!("no section of {command}"));
+        let help = String::from_utf8_lossy(&zelus(&root(), &[command, "--help"]).stdout).into_owned();
+        for option in help.split_whitespace().filter(|word| word.starts_with("--") && word.len() > 2) {
+            let option = option.trim_end_matches([',', '.', ';', ')']).split('=').next().expect("a word");
+            assert!(section.contains(option), "{command} has {option}, and its section has not:\n{section}");
+        }
+    }
 }
 
 /// Face pressures have opposite signs in the plane and in space: faces that pull are named, and faces that are listed both ways round.

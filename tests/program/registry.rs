@@ -230,7 +230,7 @@ fn names_of_the_specification_are_described() {
             problems.push(format!("{name}: no {words:?} in {text}"));
         }
     }
-    let all = String::from_utf8_lossy(&zelus(&root(), &["list"]).stdout).into_owned();
+    let all = String::from_utf8_lossy(&zelus(&root(), &["list", "all"]).stdout).into_owned();
     for line in [
         "variable (",
         "flag (",
@@ -240,7 +240,7 @@ fn names_of_the_specification_are_described() {
         "  MPCContactCriteria: ",
     ] {
         if !all.contains(line) {
-            problems.push(format!("`zelus list` has no {line:?}"));
+            problems.push(format!("`zelus list all` has no {line:?}"));
         }
     }
     assert!(problems.is_empty(), "{}", problems.join("\n"));
