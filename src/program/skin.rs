@@ -1,5 +1,6 @@
 //! Outer surface of a picture, body by body, as numbers of a page; of smaller meshes also the inside, for cuts.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -13,6 +14,8 @@ use super::stress_columns::with_invariants;
 
 /// Most numbers of all steps of a series in a page; beyond, steps are left out evenly.
 const MOST_NUMBERS: usize = 8_000_000;
+/// Most numbers of a step; fields beyond are left out, scalars and displacements last.
+const MOST_OF_A_STEP: usize = 4_000_000;
 /// Most tetrahedra of a page, by which it shows colours on a cut.
 const MOST_TETRAHEDRA: usize = 400_000;
 /// Most edges of cells of a page; more would hide the colours.
@@ -233,7 +236,9 @@ pub(super) fn view(name: &str, series: &Series) -> Result<Option<Value>> {
         edges.clear();
         listed.iter_mut().for_each(|body| body["edges"] = json!([0, 0]));
     }
-    let every = numbers(seen.len()).div_ceil(MOST_NUMBERS).max(1);
+    let left_out = left_out(&with_invariants(&first), seen.len());
+    let dropped: usize = left_out.values().sum();
+    let every = (numbers(seen.len()) - dropped * seen.len() * series.len()).div_ceil(MOST_NUMBERS).max(1);
     let mut steps = Vec::new();
     for (number, frame) in series.iter().enumerate() {
         if !number.is_multiple_of(every) && number + 1 != series.len() {
@@ -254,10 +259,13 @@ pub(super) fn view(name: &str, series: &Series) -> Result<Option<Value>> {
             None => vec![0.0; 3 * seen.len()],
         };
         let fields = with_invariants(&data);
-        let fields: Vec<Value> = fields
-            .iter()
-            .map(|column| json!([column.name, column.components, floats(&of_points(column, &seen))]))
-            .collect();
+        let kept = fields.iter().filter(|column| !left_out.contains_key(&column.name));
+        // Without a text of its own a field is that of the displacements.
+        let text = |column: &Column| match given {
+            Some(given) if given.name == column.name && !moved => Value::Null,
+            _ => json!(floats(&of_points(column, &seen))),
+        };
+        let fields: Vec<Value> = kept.map(|column| json!([column.name, column.components, text(column)])).collect();
         steps.push(json!({ "time": frame.time, "displacement": floats(&displacement), "fields": fields }));
     }
     let points: Vec<f64> = seen.iter().flat_map(|&point| first.points[point as usize]).collect();
@@ -272,9 +280,28 @@ pub(super) fn view(name: &str, series: &Series) -> Result<Option<Value>> {
         "tetrahedra": whole(cut.into_iter().map(at)),
         "has_inside": has_inside,
         "bodies": listed,
+        "fields_left_out": left_out.keys().collect::<Vec<_>>(),
         "steps_left_out": series.len() - steps.len(),
         "steps": steps,
     })))
+}
+
+/// The widest columns of a step that is too large, by name with their components: tensors first, then vectors.
+fn left_out(columns: &[Cow<'_, Column>], points: usize) -> BTreeMap<String, usize> {
+    let mut widths: Vec<(usize, &str)> = columns
+        .iter()
+        .filter(|own| own.name != "DISPLACEMENT")
+        .map(|own| (own.components, own.name.as_str()))
+        .collect();
+    widths.sort_unstable();
+    let mut sum = 3 + widths.iter().map(|(width, _)| width).sum::<usize>();
+    let mut out = BTreeMap::new();
+    while sum * points > MOST_OF_A_STEP {
+        let Some((width, name)) = widths.pop().filter(|(width, _)| *width > 1) else { break };
+        sum -= width;
+        out.insert(name.to_owned(), width);
+    }
+    out
 }
 
 /// Whether the first cell of a body is a surface.
@@ -349,6 +376,18 @@ mod tests {
             (all.len(), &all[10].ring[..], &all[11].ring[..]),
             (12, &[0, 4, 1, 5, 2, 6, 3, 7][..], &[0, 1, 2][..])
         );
+    }
+
+    #[test]
+    fn large_steps_keep_scalars_and_displacements() {
+        let column = |name: &str, width: usize| Cow::Owned(Column::real(name, width, Vec::new()));
+        let columns =
+            [column("DISPLACEMENT", 3), column("STRESS", 6), column("REACTION", 3), column("VON_MISES_STRESS", 1)];
+        let names = |points: usize| left_out(&columns, points).into_keys().collect::<Vec<_>>();
+        assert!(names(MOST_OF_A_STEP / 13).is_empty());
+        assert_eq!(names(MOST_OF_A_STEP / 12), ["STRESS"]);
+        assert_eq!(names(MOST_OF_A_STEP / 6), ["REACTION", "STRESS"]);
+        assert_eq!(names(MOST_OF_A_STEP), ["REACTION", "STRESS"]);
     }
 
     #[test]

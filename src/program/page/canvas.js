@@ -133,7 +133,7 @@ function painter(canvas, view, points) {
       const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight], all = new Uint8Array(4 * width * height);
       gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, all);
       let count = 0;
-      for (let at = 0; at < all.length; at += 4) count += BACKGROUND.some((part, own) => Math.abs(all[at + own] - part) > 8);
+      for (let at = 0; at < all.length; at += 4) if (Math.abs(all[at] - BACKGROUND[0]) + Math.abs(all[at + 1] - BACKGROUND[1]) + Math.abs(all[at + 2] - BACKGROUND[2]) > 20) count += 1;
       return count;
     },
   };

@@ -42,7 +42,7 @@ function valuesOf(step, name, component) {
   const field = step.fields.find(([own]) => own === name);
   if (!field) return null;
   const [, components, text] = field;
-  if (!decoded.has(field)) decoded.set(field, new Float32Array(bytes(text)));
+  if (!decoded.has(field)) decoded.set(field, new Float32Array(bytes(text ?? step.displacement)));
   const all = decoded.get(field), count = all.length / components;
   if (components === 1) return all;
   const made = new Float32Array(count), names = componentsOf(name, components), shift = names[0] === "size" ? 1 : 0;

@@ -61,7 +61,7 @@ function show(view, number_) {
   const sizeOf = (all) => { let most = 0; for (let at = 0; at < all.length; at += 3) { const own = Math.hypot(all[at], all[at + 1], all[at + 2]); if (own > most) most = own; } return most; };
   const most = sizeOf(displacementOf(last));
   const automatic = most > 0 && most < SEEN * extent ? rounded((AIM * extent) / most) : 1;
-  const state = { angles: flat ? [0, 0] : [...VIEWS.oblique], zoom: 1, shift: [0, 0], values: null, limits: [0, 1], section: null, playing: 0, sections: null };
+  const state = { angles: flat ? [0, 0] : [...VIEWS.oblique], zoom: 1, shift: [0, 0], values: null, limits: [0, 1], section: null, playing: 0, ready: false };
 
   const names = view.steps[last].fields.map(([name, components]) => [name, components]);
   const [fieldList, fieldLabel] = select("colour", names.map(([name]) => [name, inWords(name)]), () => { components(); load(); });
@@ -91,6 +91,7 @@ function show(view, number_) {
     element("div", { class: "row" }, ...(flat ? [] : Object.entries(VIEWS).map(([words, angles]) => button(words, () => { state.angles = [...angles]; fit(); }))), button("fit", () => fit())),
     element("p", { class: "note" }, "Drag or arrow keys rotate, wheel or + and − zoom, Shift moves; a click names the nearest node."));
   if (report.largest && "VON_MISES_STRESS" in report.largest && !names.some(([name]) => name === "VON_MISES_STRESS")) controls.append(element("p", { class: "note" }, "The run has written no stresses at nodes: leave the lists of vtu_output_process empty, or name VON_MISES_STRESS in gauss_point_variables_extrapolated_to_nodes. The table of results has the largest ones."));
+  if (view.fields_left_out.length) controls.append(element("p", { class: "note" }, `The model is large: ${view.fields_left_out.map(inWords).join(", ")} are not on this page.`));
   if (view.steps_left_out) controls.append(element("p", { class: "note" }, `${view.steps_left_out} steps are left out of this page.`));
   if (!view.has_edges) { edgeBox.disabled = true; edgeLabel.append(" (too many)"); }
   if (!view.has_inside && bodies.some((body) => body.is_solid)) controls.append(element("p", { class: "note" }, "The model is large: a cut shows the surfaces, and grey instead of the inside."));
@@ -214,6 +215,7 @@ function show(view, number_) {
   }
 
   function draw() {
+    if (!state.ready) return;
     const ratio = devicePixelRatio || 1, moved = extent + amount() * most;
     canvas.width = (canvas.clientWidth || 1000) * ratio;
     canvas.height = (canvas.clientHeight || 560) * ratio;
@@ -234,15 +236,15 @@ function show(view, number_) {
 
   // All that is shown in the middle of the canvas, right of the legend.
   function fit() {
-    const move = displacementOf(Number(stepSlider.value)), t = turn(), range = [[Infinity, -Infinity], [Infinity, -Infinity]];
+    const move = displacementOf(Number(stepSlider.value)), t = turn(), range = [[Infinity, -Infinity], [Infinity, -Infinity]], by = amount();
     for (let at = 0; at < count; at += 1) {
       if (!state.seen[at]) continue;
-      const v = [0, 1, 2].map((c) => points[3 * at + c] + amount() * move[3 * at + c] - centre[c]);
-      range.forEach((own, row) => {
-        const value = t[row] * v[0] + t[3 + row] * v[1] + t[6 + row] * v[2];
-        own[0] = Math.min(own[0], value);
-        own[1] = Math.max(own[1], value);
-      });
+      const [a, b, c] = [points[3 * at] + by * move[3 * at] - centre[0], points[3 * at + 1] + by * move[3 * at + 1] - centre[1], points[3 * at + 2] + by * move[3 * at + 2] - centre[2]];
+      for (let row = 0; row < 2; row += 1) {
+        const value = t[row] * a + t[3 + row] * b + t[6 + row] * c, own = range[row];
+        if (value < own[0]) own[0] = value;
+        if (value > own[1]) own[1] = value;
+      }
     }
     const [wide, high] = [canvas.clientWidth || 1000, canvas.clientHeight || 560], unit = Math.min(wide, high) / 2, aside = getComputedStyle(legend).position === "absolute" ? legend.offsetWidth + 12 : 0, free = 1 - aside / wide;
     if (range[0][0] > range[0][1]) return;
@@ -324,10 +326,10 @@ function show(view, number_) {
   load();
   const [top, peaks] = [limits()[1], withoutPeaks(state.values.filter((_, at) => state.seen[at]))[1]];
   if (rangeList.value === "step" && peaks < 0.5 * top) { rangeList.value = "peaks"; cut(); }
-  fit();
   // Edges show where cells are larger than a few pixels.
   edgeBox.checked = view.has_edges && (canvas.clientWidth * canvas.clientHeight) / Math.max(1, triangles.length / 3) > 40;
-  if (edgeBox.checked) draw();
+  state.ready = true;
+  fit();
   root.dataset.drawn = Number(root.dataset.drawn || 0) + paint.coloured();
   root.dataset.most = state.most < 0 ? "" : `${fieldList.value} ${state.values[state.most].toPrecision(6)} ${ids[state.most] ?? ""}`;
 }
