@@ -83,6 +83,23 @@ fn a_moment_bends_a_cantilever() {
     }
 }
 
+/// A force on the reference node of a linear cantilever leaves no moment there but that of round-off: one iteration is enough.
+#[test]
+fn a_force_without_a_moment_converges_at_once() {
+    for process in [KINEMATIC, DISTRIBUTING] {
+        let grid = Grid::new(Shape::Hex20, &[4, 2, 2], |p| [8.0 * p[0], p[1] - 0.5, p[2] - 0.5]);
+        let material = json!({"YOUNG_MODULUS": 2.1e5, "POISSON_RATIO": 0.3});
+        let mut deck = Deck::new(&grid, "SmallDisplacementElement", "LinearElastic3DLaw", material);
+        deck.fix(|p| p[0] == 0.0, [zero(), zero(), zero()]);
+        let end = deck.facets(|p| p[0] == 1.0, "SurfaceLoadCondition");
+        couple(&mut deck, process, &end, [8.0, 0.0, 0.0], json!({}));
+        load(&mut deck, [0.0, 0.0, 1.0], [0.0; 3]);
+        let ran = deck.run();
+        let iterations: Vec<usize> = ran.report.steps.iter().map(|step| step.iterations.len()).collect();
+        assert_eq!(iterations, [1], "{process}");
+    }
+}
+
 /// ANALYTIC: a bar without axial motion is twisted by u = θ x/L e_x × r, M = G J_p θ/L with the polar moment of area; trilinear shapes
 /// hold that. The rotation is that of the moment, and the moment of the supports that of a prescribed rotation.
 #[test]

@@ -66,6 +66,13 @@ impl Assembler {
             };
         });
         self.parallel.sum(&mut out);
+        // Unknowns that others follow are as accurate as the sum of the forces that these hand on.
+        let equations = self.equations.map();
+        if equations.has_slaves() {
+            for (slave, own) in out.clone().into_iter().enumerate() {
+                equations.hands_on(slave).for_each(|(master, share)| out[master as usize] += share.abs() * own);
+            }
+        }
         scale_by(f64::EPSILON, &mut out);
         out
     }
