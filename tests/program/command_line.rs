@@ -62,7 +62,12 @@ fn subjects_lead_to_names_and_a_page() {
         ("torque", "distribute_resultant_on_part_process", "docs/boundary-conditions.md#loads-by-resultant"),
         ("friction", "friction_coefficients", "docs/contact.md#friction"),
         ("Restart", "save_restart_process", "docs/restart.md"),
-        ("press-fit", "adjust_initial", "docs/contact.md#initial-gaps-and-penetration"),
+        ("press-fit", "initial_clearance_process", "docs/contact.md#clearance-by-number"),
+        (
+            "sector",
+            "apply_periodic_condition_process",
+            "docs/boundary-conditions.md#cyclic-symmetry-and-periodic-conditions",
+        ),
         ("springs", "GroundSpringCondition", ""),
     ] {
         let output = zelus(&root(), &["describe", word]);
