@@ -15,6 +15,7 @@ mod orthotropic;
 mod periodic;
 mod plastic;
 mod resultants;
+mod rigid_bodies;
 mod springs;
 mod stress_results;
 mod supports;

@@ -119,11 +119,26 @@ fn a_bolt() {
     stand_side_by_side("constraints/tightened_bolt");
 }
 
-/// Reference nodes that are made before ranks share the mesh.
+/// A rigid body with its own centre of mass swings at the left face of `constraints/coupled_block`, whose right face is held.
+pub fn hang_a_body(lists: &mut Value) {
+    let constraints = &mut lists["constraints_process_list"];
+    let body = &mut constraints[0]["Parameters"];
+    (body["mass"], body["inertia"]) = (json!(3.0), json!([0.2, 0.3, 0.4]));
+    body["centre_of_mass"] = json!([-1.5, 0.3, 0.8]);
+    let vector = |part: &str, variable: &str, held: bool, value: [f64; 3]| {
+        json!({"python_module": "assign_vector_variable_process", "Parameters": {"model_part_name": part,
+            "variable_name": variable, "constrained": [held, held, held], "value": value}})
+    };
+    constraints[2] = vector("Structure.Right", "DISPLACEMENT", true, [0.0; 3]);
+    constraints[3] = vector("Structure", "VOLUME_ACCELERATION", false, [0.0, 0.0, -0.4]);
+}
+
+/// Reference nodes and masses that are made before ranks share the mesh.
 #[test]
 fn couplings() {
     // The mesh is small: every rank has all of it.
     stand_side_by_side_with("constraints/coupled_block", false, |_| {});
+    stand_side_by_side_with("constraints/coupled_block", false, hang_a_body);
 }
 
 /// Ranks that have nothing of a variable measure it with the others.

@@ -5,7 +5,7 @@ use crate::support;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use crate::ranks_as_threads::{clamp_by_directions, slide_on_a_slope};
+use crate::ranks_as_threads::{clamp_by_directions, hang_a_body, slide_on_a_slope};
 use crate::support::{contents, root, scratch_copy};
 use crate::thread_ranks::on_threads;
 use serde_json::{Value, json};
@@ -144,6 +144,20 @@ fn scheme(deck: &mut Value, name: &str) {
     deck["solver_settings"]["scheme_type"] = json!(name);
 }
 
+/// A body that starts with a spin.
+fn swing_a_body(deck: &mut Value) {
+    hang_a_body(&mut deck["processes"]);
+    for (key, value) in
+        [("solver_type", "Dynamic"), ("time_integration_method", "implicit"), ("scheme_type", "newmark")]
+    {
+        deck["solver_settings"][key] = json!(value);
+    }
+    let spin = json!({"python_module": "assign_vector_variable_process", "Parameters": {"model_part_name": "Structure.Hub",
+        "variable_name": "ANGULAR_VELOCITY", "constrained": [false, false, false], "value": [0.1, 0.0, 0.2],
+        "interval": [0.0, 0.0]}});
+    deck["processes"]["constraints_process_list"].as_array_mut().expect("a list").push(spin);
+}
+
 fn solver(deck: &mut Value, settings: Value) {
     deck["solver_settings"]["linear_solver_settings"] = settings;
 }
@@ -217,6 +231,7 @@ fn motion() {
         Case { folder: "decks/bouncing_block", change: |deck| scheme(deck, "generalized_alpha"), steps: 40 },
         Case { folder: "decks/bouncing_block", change: |deck| scheme(deck, "bdf2"), steps: 40 },
         case("decks/oscillator", 40),
+        Case { folder: "cases/constraints/coupled_block", change: swing_a_body, steps: 10 },
         case("cases/contact_3d/explicit_touch", 50),
     ]);
 }

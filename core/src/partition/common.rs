@@ -8,7 +8,7 @@ use crate::parameters::{Node, Value};
 use crate::processes::ProcessEntry;
 
 /// Marks the nodes of surfaces that may touch, of constraints, and of parts that processes of the deck need whole
-/// ([`ProcessEntry::common`]); all nodes of a mesh of points and lines.
+/// ([`ProcessEntry::common`]); all nodes of a mesh of points and lines, and those of elements at one node.
 pub fn common_nodes(part: &ModelPart, surfaces: &[Surface], deck: &Node) -> Vec<bool> {
     let has_area = |kind: &&EntityKind| kind.cell.is_some_and(|cell| cell.cell().dim > 1);
     let mut common = vec![!part.elements.kinds.iter().any(has_area); part.nodes.len()];
@@ -18,6 +18,9 @@ pub fn common_nodes(part: &ModelPart, surfaces: &[Surface], deck: &Node) -> Vec<
     if surfaces.iter().any(|surface| surface.whole_skin) {
         outer_and_shared(&faces(part)).0.iter().flat_map(|face| face.all(part)).for_each(&mut mark);
     }
+    let is_point = |at: &usize| part.elements.kinds[*at].nodes() == 1;
+    let points = (0..part.elements.len()).filter(is_point).flat_map(|at| part.elements.nodes(at as u32));
+    points.for_each(|&node| mark(node));
     for constraint in &part.constraints {
         let masters = constraint.masters.iter().map(|((node, _), _)| *node);
         masters.chain([constraint.slave.0]).for_each(&mut mark);

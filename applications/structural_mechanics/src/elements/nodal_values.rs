@@ -38,7 +38,10 @@ pub(super) fn refuse_rotations<const NODES: usize>(
 ) -> Result<(), String> {
     for variable in [&NODAL_ROTATIONAL_STIFFNESS, &NODAL_INERTIA, &NODAL_ROTATIONAL_DAMPING_RATIO] {
         if vector(entity, view, variable) != [0.0; 3] {
-            return Err(format!("{} has no effect, nodes have no rotations: take it out", variable.name()));
+            return Err(format!(
+                "{} has no effect, nodes have no rotations: take it out; a rigid body has \"inertia\" of kinematic_coupling_process",
+                variable.name()
+            ));
         }
     }
     Ok(())

@@ -7,12 +7,17 @@ use std::ops::Range;
 
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::{ActiveSet, Interaction, Join, SetChange};
-use zelus_core::model::{MasterSlaveConstraint, ModelPart};
-use zelus_core::vector3::{cross, sub};
+use zelus_core::model::{MasterSlaveConstraint, ModelPart, Variable};
+use zelus_core::vector3::{add, cross, sub};
 
 use super::reference_node::components;
 use super::rotation_vector::{rotated, spin};
-use crate::variables::{DISPLACEMENT, ROTATION};
+use crate::variables::{
+    ACCELERATION, ANGULAR_ACCELERATION, ANGULAR_VELOCITY, DISPLACEMENT, ROTATION, VELOCITY, VOLUME_ACCELERATION,
+};
+
+/// Time level of the start of a step.
+const START: usize = 1;
 
 /// Nodes coupled to a reference node.
 #[derive(Debug, Clone)]
@@ -21,8 +26,10 @@ pub(super) struct KinematicCoupling {
     pub reference: u32,
     /// Coupled nodes with their arms.
     pub arms: Vec<(u32, [f64; 3])>,
-    /// Components that follow.
+    /// Components of them that follow.
     pub coupled: Vec<u8>,
+    /// Masses of the rigid body with their arms: all components follow.
+    pub masses: Vec<(u32, [f64; 3])>,
     /// Its constraints, by their place in the model part.
     pub made: Range<usize>,
 }
@@ -30,9 +37,9 @@ pub(super) struct KinematicCoupling {
 impl KinematicCoupling {
     /// The constraints at a rotation, node by node.
     pub fn constraints(&self, space: usize, theta: [f64; 3]) -> Vec<MasterSlaveConstraint> {
-        let [_, rotations] = components(space);
+        let [translations, rotations] = components(space);
         let unit = |k: u8| std::array::from_fn(|c| f64::from(u8::from(c == usize::from(k))));
-        let of_node = |&(node, arm): &(u32, [f64; 3])| {
+        let of_node = |(&(node, arm), coupled): (&(u32, [f64; 3]), &[u8])| {
             let now = rotated(theta, arm);
             let slopes: Vec<[f64; 3]> = rotations.iter().map(|&k| cross(spin(theta, unit(k)), now)).collect();
             let of_component = move |&c: &u8| {
@@ -49,9 +56,45 @@ impl KinematicCoupling {
                     ..MasterSlaveConstraint::new((node, DISPLACEMENT.component(c)), masters)
                 }
             };
-            self.coupled.iter().map(of_component).collect::<Vec<_>>()
+            coupled.iter().map(of_component).collect::<Vec<_>>()
         };
-        self.arms.iter().flat_map(of_node).collect()
+        let nodes = self.arms.iter().map(|arm| (arm, &*self.coupled));
+        nodes.chain(self.masses.iter().map(|arm| (arm, translations))).flat_map(of_node).collect()
+    }
+
+    /// Gives the nodes VELOCITY and ACCELERATION of a rigid body at the start of the step from those of the reference node; nothing
+    /// where that is at rest. v = v_R + ω × r and a = a_R + α × r, plus ω × (ω × r) under large rotations.
+    pub fn start(&self, part: &mut ModelPart, large: bool) {
+        let history = &mut part.nodes.history;
+        let of_reference = |variable: &Variable<[f64; 3]>| {
+            history.get(variable.name()).map_or([0.0; 3], |field| field.vector(START, self.reference as usize))
+        };
+        let [v, a] = [&VELOCITY, &ACCELERATION].map(of_reference);
+        let [omega, alpha] = [&ANGULAR_VELOCITY, &ANGULAR_ACCELERATION].map(of_reference);
+        if [v, a, omega, alpha] == [[0.0; 3]; 4] {
+            return;
+        }
+        let space = part.info.domain_size;
+        let nodes = self.arms.iter().map(|arm| (arm, &*self.coupled));
+        for (&(node, arm), coupled) in nodes.chain(self.masses.iter().map(|arm| (arm, components(space)[0]))) {
+            let by_spin = cross(omega, arm);
+            let inward = if large { cross(omega, by_spin) } else { [0.0; 3] };
+            let acceleration = add(add(a, cross(alpha, arm)), inward);
+            for (variable, value) in [(&VELOCITY, add(v, by_spin)), (&ACCELERATION, acceleration)] {
+                for &c in coupled {
+                    history.set_value(variable.component(c), node as usize, START, value[usize::from(c)]);
+                }
+            }
+        }
+    }
+
+    /// Gives the masses VOLUME_ACCELERATION of the reference node.
+    pub fn weigh(&self, part: &mut ModelPart) {
+        let Some(field) = part.nodes.history.get_mut(VOLUME_ACCELERATION.name()) else { return };
+        let gravity = field.vector(0, self.reference as usize);
+        for &(node, _) in &self.masses {
+            field.levels[0][3 * node as usize..][..3].copy_from_slice(&gravity);
+        }
     }
 
     /// Takes the constraints at the present rotation.

@@ -11,7 +11,8 @@ use zelus_core::vector3::sub;
 
 use super::constraints_of_process::{couple, uncouple};
 use super::kinematic_coupling::{KinematicCoupling, LargeRotation};
-use super::reference_node::{ReferenceNode, prepare, required};
+use super::reference_node::{self, PART, ReferenceNode, required};
+use super::rigid_body_mass::{self, add_to_mesh, part_of_masses};
 
 struct KinematicCouplingProcess {
     target: Target,
@@ -19,6 +20,8 @@ struct KinematicCouplingProcess {
     coupling: KinematicCoupling,
     /// Whether the constraints follow large rotations.
     large: bool,
+    /// Whether no step of the stage is accepted yet.
+    is_first_step: bool,
 }
 
 /// The part that a coupling names, at all times.
@@ -40,15 +43,36 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         return Err(problem.remedy("write true for one at least, in planar models in the plane").into());
     }
     let nodes = &target.selection(&part.tree)?.nodes;
-    let arm = |node: u32| sub(part.nodes.initial[node as usize], part.nodes.initial[reference.node as usize]);
+    let point = part.nodes.initial[reference.node as usize];
+    let arm = |node: u32| sub(part.nodes.initial[node as usize], point);
     let arms = nodes.iter().map(|&node| (node, arm(node))).collect();
     let large = match settings.get("large_rotations")? {
         node if node.is_null() => !is_of_small_displacements(part, nodes),
         node => node.bool()?,
     };
     let large = large && !part.info.solver.linear;
-    let coupling = KinematicCoupling { reference: reference.node, arms, coupled, made: 0..0 };
-    Ok(Box::new(KinematicCouplingProcess { target, reference, coupling, large }))
+    let masses = match rigid_body_mass::masses(&settings, part.info.domain_size, point)?.len() {
+        0 => Vec::new(),
+        _ => {
+            let nodes = &part.part(&part_of_masses(settings.get_str(PART)?))?.nodes;
+            nodes.iter().filter(|&&node| node != reference.node).map(|&node| (node, arm(node))).collect()
+        }
+    };
+    let coupling = KinematicCoupling { reference: reference.node, arms, coupled, masses, made: 0..0 };
+    Ok(Box::new(KinematicCouplingProcess { target, reference, coupling, large, is_first_step: false }))
+}
+
+/// Makes the reference node and the masses of the body where they are missing.
+fn prepare(request: &mut ProcessRequest<'_>) -> Result<()> {
+    reference_node::prepare(request)?;
+    // Faults of the settings are told when the process is made.
+    let Ok(settings) = request.settings_with(required) else { return Ok(()) };
+    let path = settings.get_str(PART)?;
+    let Ok(part) = request.model.root_mut(path) else { return Ok(()) };
+    let Some(&[node]) = part.part(path).ok().map(|own| &own.nodes[..]) else { return Ok(()) };
+    let point = part.nodes.initial[node as usize];
+    let Ok(masses) = rigid_body_mass::masses(&settings, part.info.domain_size, point) else { return Ok(()) };
+    add_to_mesh(part, (path, node), &masses, &settings)
 }
 
 /// Whether all elements at some nodes are of small displacements; collective.
@@ -73,6 +97,20 @@ impl Process for KinematicCouplingProcess {
         Ok(self.large.then(|| (self.target.path.clone(), made())))
     }
 
+    fn before_loop(&mut self, _model: &mut Model) -> Result<()> {
+        self.is_first_step = true;
+        Ok(())
+    }
+
+    fn constrain(&mut self, model: &mut Model) -> Result<()> {
+        let part = model.root_mut(&self.target.path)?;
+        if self.is_first_step {
+            self.coupling.start(part, self.large);
+        }
+        self.coupling.weigh(part);
+        Ok(())
+    }
+
     fn check(&self, model: &Model, system: &System, _warnings: &mut Report) -> Result<()> {
         let part = model.root(&self.target.path)?;
         self.reference.check(part, system)?;
@@ -85,6 +123,7 @@ impl Process for KinematicCouplingProcess {
     }
 
     fn end_step(&mut self, model: &mut Model, _system: &System) -> Result<()> {
+        self.is_first_step = false;
         self.reference.see(model.root(&self.target.path)?);
         Ok(())
     }

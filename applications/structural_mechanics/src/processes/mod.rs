@@ -8,6 +8,7 @@ mod bolt_section;
 mod bolt_pretension_process;
 mod rotation_vector;
 mod reference_node;
+mod rigid_body_mass;
 mod kinematic_coupling;
 mod kinematic_coupling_process;
 mod distributing_coupling_process;

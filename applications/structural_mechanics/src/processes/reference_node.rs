@@ -12,7 +12,10 @@ use zelus_core::processes::{ProcessRequest, Target, check_unknowns};
 use zelus_core::vector3::{norm, sub};
 
 use super::nodal_conditions::add_conditions_to_mesh;
-use crate::variables::{DISPLACEMENT, POINT_LOAD, POINT_MOMENT, REACTION, REACTION_MOMENT, ROTATION};
+use crate::variables::{
+    ANGULAR_ACCELERATION, ANGULAR_VELOCITY, DISPLACEMENT, POINT_LOAD, POINT_MOMENT, REACTION, REACTION_MOMENT,
+    ROTATION, VELOCITY,
+};
 
 /// Keys of its settings.
 pub(super) const PART: &str = "reference_model_part_name";
@@ -75,6 +78,9 @@ pub(super) fn prepare(request: &mut ProcessRequest<'_>) -> Result<()> {
     for variable in [&ROTATION, &POINT_LOAD, &POINT_MOMENT, &REACTION_MOMENT] {
         part.nodes.history.add(variable);
     }
+    if part.nodes.history.has(VELOCITY.name()) {
+        [&ANGULAR_VELOCITY, &ANGULAR_ACCELERATION].map(|variable| part.nodes.history.add(variable));
+    }
     for name in ["PointLoadCondition", "PointMomentCondition"] {
         let is_there =
             |at: u32| part.conditions.kinds[at as usize].name.starts_with(name) && part.conditions.nodes(at) == [node];
@@ -88,7 +94,7 @@ pub(super) fn prepare(request: &mut ProcessRequest<'_>) -> Result<()> {
     Ok(())
 }
 
-fn not_shared(part: &ModelPart, path: &str, place: &Place) -> Result<()> {
+pub(super) fn not_shared(part: &ModelPart, path: &str, place: &Place) -> Result<()> {
     if part.share.is_none() {
         return Ok(());
     }
