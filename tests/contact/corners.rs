@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 use crate::blocks::Vec3;
-use crate::scene::{COMPONENTS, Corner, FRICTIONLESS, Kind, Scene, corner, die, held, turned};
+use crate::scene::{COMPONENTS, Corner, FRICTIONAL, FRICTIONLESS, Kind, Scene, all_nodes, corner, die, held, turned};
 
 /// Forces on deformed faces, which stretch and turn by about 1e-3, against those on the undeformed ones.
 const FOLLOWING: f64 = 3e-3;
@@ -215,5 +215,84 @@ fn an_edge_between_the_nodes_of_a_slave_is_refused() {
         assert_eq!(status, Some(3), "{said}");
         let words = ["at an edge of a master", "slave facet", "assume_master_slave"];
         assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    }
+}
+
+/// ANALYTIC: equilibrium and Coulomb's law. A block that sticks to a floor and to a wall has more equations of contact at its corner than
+/// displacements: the friction of each face along the normal of the other is statically indeterminate there.
+#[test]
+fn a_block_sticks_to_floor_and_wall() {
+    for pairs in [
+        vec![["Bottom", "FloorTop"], ["Left", "WallFace"]],
+        vec![["FloorTop", "Bottom"], ["WallFace", "Left"]],
+        vec![["Bottom", "FloorTop"], ["WallFace", "Left"]],
+    ] {
+        for (friction, pushed) in [(0.3, 0.5), (0.6, 1.0), (0.1, 0.05)] {
+            let Corner { mut scene, floor, wall } = corner(5);
+            (scene.kind, scene.friction, scene.poisson) = (FRICTIONAL, friction, 0.3);
+            scene.loads = vec![("Top", [0.0, -1.0, 0.0]), ("Right", [-pushed, 0.0, 0.0])];
+            (scene.pairs, scene.steps) = (pairs.clone(), 2);
+            let fields = scene.results();
+            let what = format!("{pairs:?}, friction {friction}, pushed {pushed}");
+            let [of_floor, of_wall] = [&floor, &wall].map(|nodes| fields.force(nodes));
+            close(of_floor[0] + of_wall[0], 2.0 * pushed, FOLLOWING, &what);
+            close(of_floor[1] + of_wall[1], 2.0, FOLLOWING, &what);
+            assert!(of_floor[0].abs() <= friction * of_floor[1] + FOLLOWING, "{what}: floor {of_floor:?}");
+            assert!(of_wall[1].abs() <= friction * of_wall[0] + FOLLOWING, "{what}: wall {of_wall:?}");
+        }
+    }
+}
+
+/// ANALYTIC: equilibrium. A block in a rigid die with rough walls: floor and walls carry the load, turned as not turned.
+#[test]
+fn a_block_sticks_in_a_die() {
+    for (space, angle, block_is_slave) in
+        [(2, 0.0, true), (2, 0.7, true), (2, 0.0, false), (3, 0.0, true), (3, 0.5, true)]
+    {
+        let (mut scene, block) = die(space, angle, 1.0, FRICTIONAL, block_is_slave);
+        scene.friction = 0.2;
+        let fields = scene.results();
+        let walls: Vec<usize> =
+            (1..=scene.mesh.nodes.len()).filter(|node| block.binary_search(node).is_err()).collect();
+        let force = turned(-angle)(fields.force(&walls));
+        let what = format!("in {space} dimensions, turned by {angle}, block slave {block_is_slave}: {force:?}");
+        close(force[space - 1], if space == 2 { 2.0 } else { 4.0 }, FOLLOWING, &what);
+        (0..space - 1).for_each(|c| close(force[c], 0.0, FOLLOWING, &what));
+    }
+}
+
+/// ANALYTIC: Coulomb's law. A wall pushes a loaded block along a floor: the floor resists by μ times its pressure, at the corner between
+/// both faces too, and the wall gives that force.
+#[test]
+fn a_wall_pushes_a_block_along_a_floor() {
+    let friction = 0.3;
+    for space in [2, 3] {
+        let mut scene = Scene::new(space);
+        (scene.kind, scene.friction, scene.steps) = (FRICTIONAL, friction, 3);
+        let up = space - 1;
+        let flat = |x: Vec3| if space == 2 { [x[0], x[2], 0.0] } else { x };
+        let still = |x: Vec3| x;
+        let block = scene.add("Block", [[0.0; 3], flat([2.0, 2.0, 2.0])], 4, &still);
+        scene.part("Skin", &block, &[(0, 0), (up, 0)]);
+        scene.load("Top", &block, (up, 1), flat([0.0, 0.0, -1.0]));
+        let floor = scene.add("Floor", [flat([-0.5, -0.5, -1.0]), flat([3.5, 2.5, 0.0])], 5, &still);
+        let wall = scene.add("Wall", [flat([-1.0, -0.5, 0.0]), flat([0.0, 2.5, 2.2])], 5, &still);
+        let (mut nodes, mut facets) = (Vec::new(), Vec::new());
+        for side in [&floor[&(up, 1)], &wall[&(0, 1)]] {
+            nodes.extend(&side.0);
+            facets.extend(&side.1);
+        }
+        scene.mesh.part("Walls", nodes, facets);
+        scene.pairs = vec![["Skin", "Walls"]];
+        let mut moved = held(space);
+        moved[0] = json!("0.3*t");
+        scene.supports = vec![("Floor", held(space)), ("Wall", moved)];
+        let fields = scene.results();
+        let [of_floor, of_wall] = [&floor, &wall].map(|body| fields.force(&all_nodes(body)));
+        let what = format!("in {space} dimensions: floor {of_floor:?}, wall {of_wall:?}");
+        close(of_floor[0], -friction * of_floor[up], 1e-5 * of_floor[up], &what);
+        close(of_wall[0], -of_floor[0], 1e-6, &what);
+        let load = if space == 2 { 2.0 } else { 4.0 };
+        close(of_floor[up] + of_wall[up], load, FOLLOWING, &what);
     }
 }

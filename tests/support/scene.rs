@@ -14,6 +14,7 @@ const DECK: &str = "ProjectParameters.json";
 pub type Kind = (&'static str, &'static str);
 pub const FRICTIONLESS: Kind = ("ALMContactFrictionless", "Frictionless");
 pub const COMPONENTS: Kind = ("ALMContactFrictionlessComponents", "FrictionlessComponents");
+pub const FRICTIONAL: Kind = ("ALMContactFrictional", "Frictional");
 
 /// Bodies that touch and are tied.
 pub struct Scene {
@@ -28,6 +29,8 @@ pub struct Scene {
     pub pairs: Vec<[&'static str; 2]>,
     pub ties: Vec<[&'static str; 2]>,
     pub kind: Kind,
+    /// Coefficient of friction of the pairs, where the kind has one.
+    pub friction: f64,
     pub steps: usize,
     pub young: f64,
     pub poisson: f64,
@@ -44,6 +47,7 @@ impl Scene {
             pairs: Vec::new(),
             ties: Vec::new(),
             kind: FRICTIONLESS,
+            friction: 0.0,
             steps: 1,
             young: 1e3,
             poisson: 0.3,
@@ -122,6 +126,10 @@ impl Scene {
         if !self.pairs.is_empty() {
             let mut parameters = sides("contact_model_part", &self.pairs);
             parameters["contact_type"] = json!(self.kind.1);
+            if self.friction > 0.0 {
+                let keyed = (0..self.pairs.len()).map(|at| (at.to_string(), json!(self.friction)));
+                parameters["friction_coefficients"] = Value::Object(keyed.collect::<Map<_, _>>());
+            }
             contact.push(process("alm_contact_process", parameters));
             (mortar, criterion) = (self.kind.0, "contact_residual_criterion");
         }

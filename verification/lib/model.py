@@ -192,6 +192,10 @@ class Model:
             "modulus": f"({size * self.force_scale!r})*({time})", "direction": [c / size for c in self.direct(list(vector) + [0.0] * (3 - len(vector)))],
             "interval": [0.0, "End"]})))
 
+    def process(self, name, settings, kind="constraints"):
+        """Any other process."""
+        self.processes.append((kind, process(name, settings)))
+
     def rigid(self, nodes, variable="DISPLACEMENT"):
         """Nodes that move alike."""
         self.processes.append(("constraints", process("impose_rigid_movement_process", {

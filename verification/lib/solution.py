@@ -74,6 +74,11 @@ class Solution:
         unit = self.model.length ** (self.model.dim - 1)
         return {i: a / unit for i, a in self.scalar("NODAL_AREA", self.model.watched[pair], step).items()}
 
+    def number(self, name, step=-1):
+        """A number that a process gives to the report of an accepted step."""
+        accepted = [s for s in self.report["steps"] if s["converged"]]
+        return dict(accepted[step]["interactions"])[name]
+
     def at(self, nodes):
         return {i: self.model.mesh.nodes[i] for i in nodes}
 

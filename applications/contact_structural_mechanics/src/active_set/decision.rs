@@ -190,6 +190,8 @@ impl<'a> Rules<'a> {
         };
         let whole = formulation.multiplier.vector(&part.slave_nodes, owner, normal);
         let driven = constraints.rules.contains(&MultiplierConstraint::ConstantInStick);
+        let is_held =
+            state.contact() == NodeState::Stick && constraints.rules.contains(&MultiplierConstraint::HeldByOtherFace);
         let multiplier = match formulation.multiplier {
             // No multiplier restrains motion that supports prescribe: the slip itself gives the traction that would.
             Multiplier::Vector(_) if driven => {
@@ -200,6 +202,13 @@ impl<'a> Rules<'a> {
                 let kept = constraints.axes.components(kept);
                 let free = constraints.axes.vector(std::array::from_fn(|c| if along(c) { 0.0 } else { kept[c] }));
                 add(add(normal_part, free), scale(slip, stiffness / parameters.scale_factor))
+            }
+            // Where another face holds the node, slip is to begin by the traction that would stop it.
+            Multiplier::Vector(_) if is_held => {
+                let own = constraints.axes.components(slip);
+                let along = |c: usize| constraints.rules[c] == MultiplierConstraint::HeldByOtherFace;
+                let stopped = constraints.axes.vector(std::array::from_fn(|c| if along(c) { own[c] } else { 0.0 }));
+                add(whole, scale(stopped, stiffness / parameters.scale_factor))
             }
             // A sliding node slides along the directions that are free.
             Multiplier::Vector(_) => add(

@@ -7,6 +7,7 @@ mod cycling;
 mod decision;
 pub(crate) mod forced_points;
 mod supported_nodes;
+pub(crate) mod corner_nodes;
 mod joint_decision;
 mod measured_tolerances;
 mod active_set_update;

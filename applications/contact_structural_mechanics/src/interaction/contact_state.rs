@@ -6,7 +6,7 @@ use zelus_core::model::{ModelPart, bodies_of_nodes};
 use zelus_core::{Result, StateMapper};
 
 use crate::active_set::activation::{self, ActivationCriterion};
-use crate::active_set::{ActiveSetUpdate, FacetsOfPair, SupportedNodes, forced_points};
+use crate::active_set::{ActiveSetUpdate, FacetsOfPair, SupportedNodes, corner_nodes, forced_points};
 use crate::flags::{MASTER, SLAVE};
 use crate::friction;
 use crate::interface::{
@@ -289,6 +289,10 @@ impl ContactState {
 
     /// Ends a stage: the states go to the assembly, and to flags and columns.
     pub(super) fn publish(&mut self, part: &mut ModelPart) {
+        let formulation = self.setup.settings.formulation;
+        if formulation.frictional() && formulation.multiplier.is_unknown() {
+            corner_nodes::constrain(&mut self.states);
+        }
         self.pairing.set_states(&self.states);
         self.states.export(&mut part.nodes);
         let area = |slave: SlaveIndex| self.states[slave].kinematics.area;

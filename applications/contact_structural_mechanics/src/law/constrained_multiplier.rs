@@ -63,10 +63,14 @@ pub fn constrain<T: Real>(
             let own = axes.component(c, multipliers[j]);
             row[c] = match constraints.rules[c] {
                 MultiplierConstraint::Free => continue,
-                MultiplierConstraint::ConstantInStick if node.state == NodeState::Slip => continue,
-                MultiplierConstraint::Constant | MultiplierConstraint::ConstantInStick => {
-                    (T::constant(own.value()) - own) * node.constraint_weight
+                MultiplierConstraint::ConstantInStick | MultiplierConstraint::HeldByOtherFace
+                    if node.state == NodeState::Slip =>
+                {
+                    continue;
                 }
+                MultiplierConstraint::Constant
+                | MultiplierConstraint::ConstantInStick
+                | MultiplierConstraint::HeldByOtherFace => (T::constant(own.value()) - own) * node.constraint_weight,
                 MultiplierConstraint::Crosspoint => {
                     let free = (0..nodes.len()).filter(|&k| nodes[k].constraints.is_free_along(c, axes));
                     let (mut sum, mut count, mut any) = (T::zero(), 0.0, false);

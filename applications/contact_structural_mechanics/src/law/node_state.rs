@@ -48,6 +48,8 @@ pub enum MultiplierConstraint {
     Crosspoint,
     /// It keeps its value while the node sticks: supports move the opposite master.
     ConstantInStick,
+    /// It keeps its value while the node sticks: another face of the mesh node is held along it.
+    HeldByOtherFace,
 }
 
 impl MultiplierConstraint {

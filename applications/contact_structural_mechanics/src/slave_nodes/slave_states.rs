@@ -158,6 +158,12 @@ impl SlaveStates {
         self.table.at(node).map(|place| SlaveIndex(place as u32))
     }
 
+    /// The slave nodes of each mesh node that has several.
+    pub fn at_corners(&self) -> Vec<Range<usize>> {
+        let own = self.table.nodes.chunk_by(|a, b| a == b).scan(0, next_range);
+        own.filter(|range| range.len() > 1).collect()
+    }
+
     /// The only slave node at a mesh node, of interactions that have one at each.
     ///
     /// # Panics

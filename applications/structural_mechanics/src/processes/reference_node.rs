@@ -79,7 +79,8 @@ pub(super) fn prepare(request: &mut ProcessRequest<'_>) -> Result<()> {
         part.nodes.history.add(variable);
     }
     if part.nodes.history.has(VELOCITY.name()) {
-        [&ANGULAR_VELOCITY, &ANGULAR_ACCELERATION].map(|variable| part.nodes.history.add(variable));
+        part.nodes.history.add(&ANGULAR_VELOCITY);
+        part.nodes.history.add(&ANGULAR_ACCELERATION);
     }
     for name in ["PointLoadCondition", "PointMomentCondition"] {
         let is_there =
