@@ -5,7 +5,7 @@ from lib.solution import solve
 
 YOUNG, FRICTION, PRELOAD, CLEARANCE, SIDE, HOLE, THICK = 1e5, 0.3, 1000.0, 0.05, 30.0, 10.0, 8.0
 HALF = 0.5 * HOLE
-SLIP = [0.5 * CLEARANCE, 0.9 * CLEARANCE, 1.2 * CLEARANCE]
+SLIP = [0.5 * CLEARANCE, 0.9 * CLEARANCE, 1.6 * CLEARANCE]
 
 
 def run(n, family="ALM frictional", length=1.0, stress=1.0, along=(1.0, 0.0)):
@@ -80,7 +80,7 @@ CASE = Case(
     "give, until the wall of the hole meets the shank. Values are shares of μ F; beyond the clearance the bolt bears, and more is needed.",
     [Quantity("slips at half the clearance", 1.0, {"": 1e-4, "Nitsche": 1e-2}, order=False),
      Quantity("slips at 0.9 of it", 1.0, {"": 1e-4, "Nitsche": 1e-2}, order=False),
-     Quantity("bears beyond it", lambda variant: 0.0 if variant == "oblique" else 1.0, 1e-12, scale=1.0, order=False), Quantity("balance", 0.0, 1e-6, scale=1.0, order=False)],
+     Quantity("bears beyond it", 1.0, 1e-12, order=False), Quantity("balance", 0.0, 1e-6, scale=1.0, order=False)],
     (2, 4), run, size=lambda n: 1 / n,
     variants={"ALM": {}, "Nitsche": {"family": "Nitsche frictional"}, "along another side": {"along": (0.0, -1.0)}, "oblique": {"along": (0.6, 0.8)},
               "millimetres": {"length": 1e3, "stress": 1e-6}},
