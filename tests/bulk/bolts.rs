@@ -119,7 +119,12 @@ fn the_joint_diagram_is_exact() {
         let point = if dim == 3 { [0.5, 0.5, 1.9] } else { [0.5, 1.9, 0.0] };
         let settings = json!({"point": point, "normal": axis(dim), "force": "10*t", "interval": [0.0, 1.5]});
         let (deck, bolt) = deck(&grid, settings);
-        let found = diagram(&deck.run(), &grid, &bolt);
+        let ran = deck.run();
+        let found = diagram(&ran, &grid, &bolt);
+        for step in &ran.report.steps {
+            let forces = &step.balance.as_ref().expect("a balance").unknowns[0].forces;
+            assert!(forces.relative < 1e-10, "{shape:?}: the force of the bolt acts between its sides: {forces:?}");
+        }
         let locked = 10.0 / 100.0 + 10.0 / 300.0;
         let expected = [[10.0, 10.0], [11.25, 6.25], [13.33325, 0.00025], [14.0, 0.0]];
         for (step, ([bolt, shortening, clamp], [of_bolt, of_clamp])) in found.into_iter().zip(expected).enumerate() {

@@ -7,6 +7,7 @@ use crate::StateMapper;
 use crate::assembly::{Assembler, Inertia, PairForce, System};
 use crate::diagnostics::Result;
 use crate::entities::PairState;
+use crate::model::flags::RELATIVE;
 use crate::model::{ModelPart, Rates, ScalarVariable, mesh_box};
 use crate::vector3::{add, cross, norm, sub};
 
@@ -234,7 +235,8 @@ fn forces(
     Ok([loads, elements, interactions, inertia, reactions])
 }
 
-/// The sums over the nodes of all ranks, for each unknown that has reactions; collective.
+/// The sums over the nodes of all ranks, for each unknown that has reactions; without nodes of relative motions, whose forces act between
+/// two sides. Collective.
 fn sums(
     part: &ModelPart,
     system: &System,
@@ -258,7 +260,7 @@ fn sums(
         let c = variable.offset();
         for n in system.dofs.of_variable(variable) {
             let node = system.dofs.dofs()[n].node as usize;
-            if !part.owns_node(node) {
+            if !part.owns_node(node) || part.nodes.flags.is(RELATIVE, node) {
                 continue;
             }
             let arm = sub(part.nodes.current[node], centre);

@@ -7,6 +7,7 @@
 use zelus_core::assembly::System;
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
 use zelus_core::entities::{EntityBlock, LocalSystems, Request};
+use zelus_core::model::flags::RELATIVE;
 use zelus_core::model::{MasterSlaveConstraint, Model, ModelPart, PropertyValue, ScalarVariable, SubPart};
 use zelus_core::names::{Name, lasting};
 use zelus_core::parameters::{Defaults, Settings, SpaceTime};
@@ -121,6 +122,7 @@ fn prepare(request: &mut ProcessRequest<'_>) -> Result<()> {
         BoltSection::find(part, &target.path, bolt, &cut).map_err(|problem| problem.at(target.place.clone()))?;
     let first = section.open(part);
     let reference = part.add_node(section.centre);
+    part.nodes.flags.set(RELATIVE, reference as usize, true);
     let made = add_conditions_to_mesh(part, "ResultantLoadCondition", &[reference])?;
     let is_warm = part.nodes.history.has(TEMPERATURE.name());
     let constraints = constraints(&section, first, reference, part.info.domain_size, is_warm);
