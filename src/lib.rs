@@ -35,6 +35,7 @@ use zelus_convection_diffusion as _;
 use zelus_meshes as _;
 use zelus_structural_mechanics as _;
 use zelus_thermal_contact as _;
+use zelus_user_materials as _;
 use zelus_wear as _;
 
 pub use zelus_constrained_optimization as constrained_optimization;
@@ -47,4 +48,5 @@ pub use zelus_core::{Error, Result};
 pub use zelus_meshes as meshes;
 pub use zelus_structural_mechanics as structural_mechanics;
 pub use zelus_thermal_contact as thermal_contact;
+pub use zelus_user_materials as user_materials;
 pub use zelus_wear as wear;

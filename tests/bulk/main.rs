@@ -19,3 +19,4 @@ mod rigid_bodies;
 mod springs;
 mod stress_results;
 mod supports;
+mod user_materials;

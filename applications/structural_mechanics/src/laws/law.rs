@@ -36,6 +36,8 @@ pub struct StrainState<'a, const S: usize> {
     pub elastic: bool,
     /// Axes of the element as rows, where it has some and the law asks for them ([`ConstitutiveLaw::has_axes`]); else those of the space.
     pub axes: Option<Tensor>,
+    /// Id of the element and number of the Gauss point, from 1; zeros where unknown.
+    pub place: [usize; 2],
     /// History of the law at the last accepted step: [`ConstitutiveLaw::history`] numbers.
     pub history: &'a [f64],
 }
@@ -54,13 +56,27 @@ impl<'a, const S: usize> StrainState<'a, S> {
         band_as_kratos: false,
         elastic: false,
         axes: None,
+        place: [0; 2],
         history: &[],
     };
 
     /// The same with other components of strain.
     pub fn with_strain<const T: usize>(self, strain: [f64; T]) -> StrainState<'a, T> {
-        let Self { f, det_f, small, pressure, temperature, step, band, band_as_kratos, elastic, axes, history, .. } =
-            self;
+        let Self {
+            f,
+            det_f,
+            small,
+            pressure,
+            temperature,
+            step,
+            band,
+            band_as_kratos,
+            elastic,
+            axes,
+            place,
+            history,
+            ..
+        } = self;
         StrainState {
             strain,
             f,
@@ -73,6 +89,7 @@ impl<'a, const S: usize> StrainState<'a, S> {
             band_as_kratos,
             elastic,
             axes,
+            place,
             history,
         }
     }

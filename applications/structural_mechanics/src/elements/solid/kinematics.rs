@@ -56,6 +56,8 @@ pub(super) struct ElementMotion<const NODES: usize> {
     elastic: bool,
     /// TIME at the beginning and at the end of the step.
     step: [f64; 2],
+    /// Id of the element.
+    element: usize,
     /// Axes of the material, where the law asks for them.
     axes: Result<Option<Tensor>, &'static str>,
 }
@@ -87,11 +89,12 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
         let elastic = view.info.has(ELASTIC);
         let step = [view.info.time - view.info.delta_time, view.info.time];
         let axes = if material.law.has_axes() { Self::axes(entity, view) } else { Ok(None) };
+        let element = view.elements.ids.get(entity.index as usize).copied().unwrap_or(0);
         let displacement = nodal_vectors(entity, view, &DISPLACEMENT);
         let column = view.nodes.history.values(&TEMPERATURE, 0);
         let temperatures = (!column.is_empty()).then(|| entity.scalars(column));
         if !F::FINITE {
-            return ElementMotion { u: displacement, ahead: None, temperatures, band, elastic, step, axes };
+            return ElementMotion { u: displacement, ahead: None, temperatures, band, elastic, step, element, axes };
         }
         let (x, initial) = (&entity.current, &entity.initial);
         let nodes = |of: &dyn Fn(usize, usize) -> f64| {
@@ -109,7 +112,16 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             };
             [nodes(&|i, c| x[i][c] - initial[i][c] - (displacement[i][c] - old[i][c])), old]
         });
-        ElementMotion { u: nodes(&|i, c| x[i][c] - initial[i][c]), ahead, temperatures, band, elastic, step, axes }
+        ElementMotion {
+            u: nodes(&|i, c| x[i][c] - initial[i][c]),
+            ahead,
+            temperatures,
+            band,
+            elastic,
+            step,
+            element,
+            axes,
+        }
     }
 
     /// Axes of the material of an element.
@@ -256,6 +268,7 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
                 band_as_kratos: motion.band.1,
                 elastic: motion.elastic,
                 axes: motion.axes?,
+                place: [motion.element, g + 1],
                 history: material.remembered(g, state),
             },
         })

@@ -1,0 +1,179 @@
+//! Constants and library of a user material, and the history of a point of it.
+
+use std::cell::RefCell;
+use std::sync::Arc;
+
+use zelus_core::diagnostics::{Diagnostic, Result};
+use zelus_core::model::{Properties, PropertyValue};
+use zelus_structural_mechanics::tensor::Tensor;
+
+use crate::arguments::{Arguments, COMPONENTS};
+use crate::library::{Subroutine, subroutine};
+
+/// Tensor components in the order of the calling convention.
+pub const PAIRS: [(usize, usize); COMPONENTS] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
+/// Places in the history: stress, strain, deformation gradient less 1, whether a step was accepted and its TIME, then states.
+const STRAIN: usize = COMPONENTS;
+const GRADIENT: usize = 2 * COMPONENTS;
+const TIME: usize = GRADIENT + 9;
+const STATES: usize = TIME + 2;
+
+thread_local! {
+    static SCRATCH: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
+}
+
+/// A subroutine with its constants.
+pub struct UserMaterial {
+    subroutine: Arc<Subroutine>,
+    constants: Vec<f64>,
+    /// State variables at the start.
+    states: Vec<f64>,
+    name: String,
+    in_turn: bool,
+    /// Whether its tangent is symmetric.
+    pub is_symmetric: bool,
+}
+
+/// The state of a point that was accepted last.
+#[derive(Debug, Clone, Copy)]
+pub struct PastPoint {
+    /// Stress in the order of the calling convention (force per area).
+    pub stress: [f64; COMPONENTS],
+    /// Strain, engineering shear.
+    pub strain: [f64; COMPONENTS],
+    /// Deformation gradient.
+    pub gradient: Tensor,
+    /// TIME, where a step was accepted.
+    pub time: Option<f64>,
+}
+
+impl PastPoint {
+    /// That of a history.
+    pub fn of(history: &[f64]) -> Self {
+        let six = |at: usize| std::array::from_fn(|c| history[at + c]);
+        let gradient = Tensor::from_fn(|i, j| history[GRADIENT + 3 * j + i]) + Tensor::identity();
+        let time = (history[TIME] > 0.0).then_some(history[TIME + 1]);
+        Self { stress: six(0), strain: six(STRAIN), gradient, time }
+    }
+
+    fn write(&self, history: &mut [f64]) {
+        history[..COMPONENTS].copy_from_slice(&self.stress);
+        history[STRAIN..GRADIENT].copy_from_slice(&self.strain);
+        let change = self.gradient - Tensor::identity();
+        history[GRADIENT..TIME].copy_from_slice(change.as_slice());
+        history[TIME..STATES].copy_from_slice(&[f64::from(u8::from(self.time.is_some())), self.time.unwrap_or(0.0)]);
+    }
+}
+
+impl UserMaterial {
+    /// That of properties.
+    ///
+    /// # Errors
+    /// A library that cannot be used; constants that are no list of numbers.
+    pub fn of(properties: &Properties) -> Result<Self> {
+        let list = |name: &str| match properties.values.get(name) {
+            Some(PropertyValue::Vector(values)) => Ok(values.clone()),
+            Some(PropertyValue::Number(value)) => Ok(vec![*value]),
+            None => Ok(Vec::new()),
+            Some(_) => {
+                let fact = format!("{name} of properties {} is no list of numbers", properties.id);
+                let problem = Diagnostic::error("user-material", fact).at(properties.place.clone());
+                Err(problem.remedy("write a list, as [210e9, 0.3]"))
+            }
+        };
+        let (constants, states) = (list("UMAT_PARAMETERS")?, list("STATE_VARIABLES")?);
+        let name = match properties.values.get("UMAT_NAME") {
+            Some(PropertyValue::Text(name)) => name.clone(),
+            _ => "USER".to_owned(),
+        };
+        let in_turn = properties.number("UMAT_IS_THREAD_SAFE").is_none_or(|flag| flag == 0.0);
+        let is_symmetric = properties.number("UMAT_IS_UNSYMMETRIC").is_none_or(|flag| flag == 0.0);
+        Ok(Self { subroutine: subroutine(properties)?, constants, states, name, in_turn, is_symmetric })
+    }
+
+    /// Numbers of history of a point.
+    pub fn history(&self) -> usize {
+        STATES + self.states.len()
+    }
+
+    /// A call from a past point with `components` of stress, whose increment is still to be given.
+    pub fn arguments(&self, past: &PastPoint, components: usize, time: [f64; 2], place: [usize; 2]) -> Arguments<'_> {
+        let identity = std::array::from_fn(|at| if at % 4 == 0 { 1.0 } else { 0.0 });
+        Arguments {
+            stress: past.stress,
+            tangent: [0.0; COMPONENTS * COMPONENTS],
+            strain: past.strain,
+            increment: [0.0; COMPONENTS],
+            gradients: [identity; 2],
+            rotation: identity,
+            time: [past.time.unwrap_or(time[0]), time[1]],
+            components,
+            constants: &self.constants,
+            name: &self.name,
+            place,
+            energies: [0.0; 3],
+            next_step: 1.0,
+        }
+    }
+
+    /// Calls the subroutine with the states of a history; `keep` gets those at the end. Stresses are not numbers where the routine asks
+    /// for a shorter step.
+    pub fn call(&self, arguments: &mut Arguments<'_>, history: &[f64], keep: &mut dyn FnMut(&[f64])) {
+        SCRATCH.with_borrow_mut(|states| {
+            states.clear();
+            states.extend(self.states.iter().zip(&history[STATES..]).map(|(start, change)| start + change));
+            arguments.call(&self.subroutine, self.in_turn, states);
+            keep(states);
+        });
+        if self.is_symmetric {
+            arguments.take_symmetric_tangent();
+        }
+        if arguments.next_step < 1.0 {
+            arguments.stress = [f64::NAN; COMPONENTS];
+        }
+    }
+
+    /// Writes a point and its states into a history.
+    pub fn remember(&self, point: &PastPoint, states: &[f64], history: &mut [f64]) {
+        point.write(history);
+        for ((to, state), start) in history[STATES..].iter_mut().zip(states).zip(&self.states) {
+            *to = state - start;
+        }
+    }
+
+    /// STATEV of a history.
+    pub fn states<'a>(&'a self, history: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+        self.states.iter().zip(&history[STATES..]).map(|(start, change)| start + change)
+    }
+}
+
+/// Components of stress of a law with `S` Voigt components: a slab has the one across it, too.
+pub const fn components<const S: usize>() -> usize {
+    if S == 6 { 6 } else { 4 }
+}
+
+/// The place of each of `S` Voigt components in the calling convention.
+pub fn places<const S: usize>() -> [usize; S] {
+    std::array::from_fn(|c| match (S, c) {
+        (6, 4) => 5,
+        (6, 5) => 4,
+        (3, 2) => 3,
+        _ => c,
+    })
+}
+
+/// A symmetric tensor from a vector; shear components times `shear`.
+pub fn tensor(vector: &[f64; COMPONENTS], shear: f64) -> Tensor {
+    let mut out = Tensor::zeros();
+    for (c, (i, j)) in PAIRS.into_iter().enumerate() {
+        let value = if i == j { vector[c] } else { shear * vector[c] };
+        (out[(i, j)], out[(j, i)]) = (value, value);
+    }
+    out
+}
+
+/// The vector of a symmetric tensor; shear components times `shear`.
+pub fn vector(tensor: &Tensor, shear: f64) -> [f64; COMPONENTS] {
+    PAIRS.map(|(i, j)| if i == j { tensor[(i, j)] } else { shear * tensor[(i, j)] })
+}
