@@ -285,7 +285,8 @@ struct Impact {
     said: String,
 }
 
-fn impact(method: &str, elements: usize, time_step: f64, springs: Value) -> Impact {
+/// The deck of an impact at a speed.
+fn write_impact(method: &str, elements: usize, time_step: f64, speed: f64, springs: Value) -> tempfile::TempDir {
     let folder = tempfile::tempdir().expect("a scratch folder");
     let (n, h) = (elements, 1.0 / elements as f64);
     let mut mesh =
@@ -304,7 +305,7 @@ fn impact(method: &str, elements: usize, time_step: f64, springs: Value) -> Impa
     }
     mesh += "End Elements\n\nBegin Conditions LineCondition2D2N\n1 0 4 3\n2 0 5 6\nEnd Conditions\n\nBegin NodalData VELOCITY_Y\n";
     let bar: Vec<usize> = (5..=2 * levels.len()).collect();
-    bar.iter().for_each(|node| writeln!(mesh, "{node} 0 -0.01").unwrap());
+    bar.iter().for_each(|node| writeln!(mesh, "{node} 0 {}", -speed).unwrap());
     mesh += "End NodalData\n";
     let list = |ids: &[usize]| ids.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
     let elements: Vec<usize> = (2..n + 2).collect();
@@ -368,11 +369,17 @@ fn impact(method: &str, elements: usize, time_step: f64, springs: Value) -> Impa
                 "Parameters": {"output_file_name": "bar.json", "model_part_name": "Structure.Bar",
                     "output_variables": ["DISPLACEMENT", "VELOCITY"], "time_frequency": 0.0}}]}});
     write_json(&folder.path().join(DECK), &deck);
+    folder
+}
+
+fn impact(method: &str, elements: usize, time_step: f64, springs: Value) -> Impact {
+    let folder = write_impact(method, elements, time_step, 0.01, springs);
     let said = run(folder.path());
     let results = Results::read(&folder.path().join("bar.json")).expect("results");
     let step = results.step(None).expect("a step");
     let time = results.times()[step];
-    let weight = |node: u64| if node <= 6 || node as usize > 2 * levels.len() - 2 { 0.25 } else { 0.5 } * h;
+    let last = 2 * (elements + 3) - 2;
+    let weight = |node: u64| if node <= 6 || node as usize > last { 0.25 } else { 0.5 } / elements as f64;
     let mean = |quantity: &str, power: i32| {
         results.nodal(quantity, step).iter().map(|(&node, v)| weight(node) * v.powi(power)).sum::<f64>()
     };
@@ -395,6 +402,25 @@ fn explicit_contact_makes_no_energy() {
     }
     let given = impact("explicit", 20, 0.9 * h, json!({"manual_ALM": true, "penalty": 10.0 / h}));
     assert!(given.said.contains("warning[contact-step]"), "{}", given.said);
+}
+
+/// A bar that hits the wall at 0.6 of its wave speed goes 0.3 of a cell into it, where contact of explicit steps is no more than the largest
+/// stable penalty: the run ends there, and says how it can be mended. A setting allows it.
+#[test]
+fn explicit_steps_that_pierce_are_refused() {
+    let folder = write_impact("explicit", 20, 0.02, 0.6, json!({}));
+    let output = zelus(folder.path(), &["run", DECK]);
+    assert_eq!(output.status.code(), Some(3), "{}", said(&output));
+    for words in
+        ["inside the master by more than 0.2 of their mesh size", "shorten \"time_step\"", "largest_penetration"]
+    {
+        assert!(said(&output).contains(words), "no {words:?} in: {}", said(&output));
+    }
+    let path = folder.path().join(DECK);
+    let mut deck = read_json(&path).expect("the deck");
+    deck["solver_settings"]["contact_settings"]["largest_penetration"] = json!(0.0);
+    write_json(&path, &deck);
+    run(folder.path());
 }
 
 /// The bar touches the wall for the time 2 L/c that a wave needs to its end and back, and leaves with the speed it came

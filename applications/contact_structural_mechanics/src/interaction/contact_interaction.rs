@@ -10,7 +10,7 @@ use zelus_core::entities::{
     MasslessNodes, OuterLoop, PairState, Responses, Retry, SetChange,
 };
 use zelus_core::model::{DofOwners, ModelPart};
-use zelus_core::{Result, State, StateMapper};
+use zelus_core::{Error, Result, State, StateMapper};
 use zelus_structural_mechanics::variables::{NORMAL, VELOCITY};
 
 use super::contact_state::{ContactState, RememberedContact};
@@ -24,7 +24,7 @@ use crate::interface::{Bodies, SlaveIndex, check_nodes, find_nodal_h};
 use crate::kratos::FirstIterateTangent;
 use crate::law::StepParameters;
 use crate::results::{heat, joins, pair_states, write_forces};
-use crate::safeguards::{FreeBodies, InterfacesInContact, near_nodes};
+use crate::safeguards::{FreeBodies, InterfacesInContact, SHORTER, near_nodes, too_deep};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::SlaveState;
 use crate::variables::{INITIAL_PENALTY, WEIGHTED_GAP, WEIGHTED_SLIP};
@@ -106,6 +106,17 @@ impl ContactInteraction {
         }
         self.shape = part.nodes.reshaped;
         Ok(())
+    }
+
+    /// # Errors
+    /// An explicit step that leaves a slave node too deep in the master: it has no iterations that could fail.
+    fn explicit_depth(&self, part: &ModelPart) -> Result<()> {
+        let ContactState { setup: Setup { settings, tolerances, .. }, states, .. } = &self.contact;
+        let most = settings.solver.largest_penetration;
+        match too_deep(part, states, most, tolerances.length, SHORTER) {
+            Some(why) => Err(Error::NotConverged(format!("step {} to time {}: {why}", part.info.step, part.info.time))),
+            None => Ok(()),
+        }
     }
 
     /// Whether other nodes carry the mass of those of contact in motion.
@@ -193,6 +204,9 @@ impl Interaction for ContactInteraction {
     }
 
     fn finalize_step(&mut self, part: &mut ModelPart) -> Result<()> {
+        if self.acting && self.contact.setup.settings.explicit.is_some() {
+            self.explicit_depth(part)?;
+        }
         self.loops.accept(part, &mut self.contact);
         if self.acting {
             self.in_contact.accept(&self.contact.pairing.slaves_by_interface(), &self.contact.states);

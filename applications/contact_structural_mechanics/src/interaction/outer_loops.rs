@@ -12,7 +12,7 @@ use super::contact_state::ContactState;
 use crate::active_set::{ActiveSetUpdate, Rules};
 use crate::adaptation::{FrictionRamp, PenaltyRamp, Uzawa};
 use crate::pairs::Multiplier;
-use crate::safeguards::{ContactWork, PenetrationCheck, StepSearch, coarse_impact, pierced, too_deep};
+use crate::safeguards::{ContactWork, PenetrationCheck, STIFFER, StepSearch, coarse_impact, pierced, too_deep};
 use crate::slave_nodes::SlaveStates;
 
 /// The loops of a step.
@@ -122,8 +122,8 @@ impl OuterLoops {
         {
             return Ok(OuterLoop::Failed(why));
         }
-        if let Some(why) = too_deep(part, &contact.states, solver.largest_penetration, contact.setup.tolerances.length)
-        {
+        let least = contact.setup.tolerances.length;
+        if let Some(why) = too_deep(part, &contact.states, solver.largest_penetration, least, STIFFER) {
             return Ok(OuterLoop::Failed(why));
         }
         if let Some(why) =

@@ -6,9 +6,15 @@ use zelus_core::model::ModelPart;
 use crate::slave_nodes::SlaveStates;
 use crate::variables::NODAL_H;
 
+/// Remedy of steps that iterate.
+pub(crate) const STIFFER: &str = "raise the penalty (\"stiffness_factor\" of \"advance_ALM_parameters\", or a manual \"penalty\"), use alm_contact_process";
+/// Remedy of explicit steps, whose largest stable penalty grows as 1/Δt².
+pub(crate) const SHORTER: &str =
+    "shorten \"time_step\", which lets the penalty be stiffer, or refine the mesh of both sides";
+
 /// Why a state cannot be accepted in which a node in contact is deeper in the master than `most` of its mesh size, 0: any; depths up to
 /// `least` are round-off.
-pub(crate) fn too_deep(part: &ModelPart, states: &SlaveStates, most: f64, least: f64) -> Option<String> {
+pub(crate) fn too_deep(part: &ModelPart, states: &SlaveStates, most: f64, least: f64, remedy: &str) -> Option<String> {
     if most <= 0.0 {
         return None;
     }
@@ -22,7 +28,7 @@ pub(crate) fn too_deep(part: &ModelPart, states: &SlaveStates, most: f64, least:
     let nodes = counted(deep.len(), "slave node in contact is", "slave nodes in contact are");
     let place = coordinates(part.nodes.initial[node as usize]);
     Some(format!(
-        "{nodes} inside the master by more than {most} of their mesh size, node {} at {place} by {depth:.3e} ({:.2} of it): raise the penalty (\"stiffness_factor\" of \"advance_ALM_parameters\", or a manual \"penalty\"), use alm_contact_process, or allow more by \"largest_penetration\" in \"contact_settings\"",
+        "{nodes} inside the master by more than {most} of their mesh size, node {} at {place} by {depth:.3e} ({:.2} of it): {remedy}, or allow more by \"largest_penetration\" in \"contact_settings\"",
         part.nodes.ids[node as usize],
         share(node, depth)
     ))

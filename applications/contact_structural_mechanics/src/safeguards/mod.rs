@@ -15,7 +15,7 @@ pub(crate) use free_bodies::FreeBodies;
 pub(crate) use impact::{coarse_impact, near_nodes};
 pub(crate) use initial_overlap::settle_all;
 pub(crate) use interfaces_in_contact::InterfacesInContact;
-pub(crate) use largest_penetration::too_deep;
+pub(crate) use largest_penetration::{SHORTER, STIFFER, too_deep};
 pub(crate) use penetration_check::PenetrationCheck;
 pub(crate) use piercing::pierced;
 pub(crate) use step_search::StepSearch;
