@@ -2,7 +2,6 @@
 
 use std::cell::Cell;
 use std::sync::Once;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use libc::{SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGSEGV, c_int};
 
@@ -11,8 +10,6 @@ thread_local! {
     static WITHIN: Cell<(u64, u64)> = const { Cell::new((0, 0)) };
 }
 
-/// Element id of the call that a STOP would end, 0 outside.
-static CALLED: AtomicU64 = AtomicU64::new(0);
 static INSTALL: Once = Once::new();
 
 /// Exit code of a run that an entity ends.
@@ -22,9 +19,7 @@ const EXIT: c_int = 3;
 pub(crate) fn within<T>(element: usize, point: usize, call: impl FnOnce() -> T) -> T {
     INSTALL.call_once(install);
     WITHIN.set((element as u64, point as u64));
-    CALLED.store(element as u64, Ordering::Relaxed);
     let out = call();
-    CALLED.store(0, Ordering::Relaxed);
     WITHIN.set((0, 0));
     out
 }
@@ -65,9 +60,10 @@ extern "C" fn on_signal(signal: c_int) {
 }
 
 extern "C" fn on_exit() {
-    let element = CALLED.swap(0, Ordering::Relaxed);
+    // A STOP runs this on the thread that it ends.
+    let (element, point) = WITHIN.get();
     if element > 0 {
-        say(element, 0, b"its own STOP");
+        say(element, point, b"its own STOP");
         // SAFETY: ends the program; a STOP without a code would be a success.
         unsafe { libc::_exit(EXIT) }
     }
