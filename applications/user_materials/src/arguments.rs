@@ -12,6 +12,16 @@ pub const COMPONENTS: usize = 6;
 /// Length of CMNAME.
 const NAME: usize = 80;
 
+/// CMNAME: capitals, filled with blanks.
+pub type Name = [u8; NAME];
+
+/// The name of a material as CMNAME.
+pub fn name_of(text: &str) -> Name {
+    let mut name = [b' '; NAME];
+    name.iter_mut().zip(text.bytes()).for_each(|(to, from)| *to = from.to_ascii_uppercase());
+    name
+}
+
 /// Input and output of a call.
 #[derive(Debug, Clone)]
 pub struct Arguments<'a> {
@@ -34,7 +44,7 @@ pub struct Arguments<'a> {
     /// Constants.
     pub constants: &'a [f64],
     /// Name of the material.
-    pub name: &'a str,
+    pub name: &'a Name,
     /// Id of the element and number of the Gauss point, 0 where unknown.
     pub place: [usize; 2],
     /// Energy per volume that the routine states: elastic, plastic, creep.
@@ -57,8 +67,6 @@ impl Arguments<'_> {
 
     /// Calls the subroutine; `states` are those at the start, and at the end.
     pub fn call(&mut self, subroutine: &Subroutine, in_turn: bool, states: &mut [f64]) {
-        let mut name = [b' '; NAME];
-        name.iter_mut().zip(self.name.bytes()).for_each(|(to, from)| *to = from.to_ascii_uppercase());
         let [begin, end] = self.time;
         let (time, step) = ([begin, begin], end - begin);
         let direct = 3;
@@ -92,7 +100,7 @@ impl Arguments<'_> {
                     &zero,
                     &zero,
                     &zero,
-                    name.as_ptr(),
+                    self.name.as_ptr(),
                     &direct,
                     &shear,
                     &all,

@@ -7,7 +7,7 @@ use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::model::{Properties, PropertyValue};
 use zelus_structural_mechanics::tensor::Tensor;
 
-use crate::arguments::{Arguments, COMPONENTS};
+use crate::arguments::{Arguments, COMPONENTS, Name, name_of};
 use crate::library::{Subroutine, subroutine};
 
 /// Tensor components in the order of the calling convention.
@@ -29,7 +29,7 @@ pub struct UserMaterial {
     constants: Vec<f64>,
     /// State variables at the start.
     states: Vec<f64>,
-    name: String,
+    name: Name,
     in_turn: bool,
     /// Whether its tangent is symmetric.
     pub is_symmetric: bool,
@@ -84,8 +84,8 @@ impl UserMaterial {
         };
         let (constants, states) = (list("UMAT_PARAMETERS")?, list("STATE_VARIABLES")?);
         let name = match properties.values.get("UMAT_NAME") {
-            Some(PropertyValue::Text(name)) => name.clone(),
-            _ => "USER".to_owned(),
+            Some(PropertyValue::Text(name)) => name_of(name),
+            _ => name_of("USER"),
         };
         let in_turn = properties.number("UMAT_IS_THREAD_SAFE").is_none_or(|flag| flag == 0.0);
         let is_symmetric = properties.number("UMAT_IS_UNSYMMETRIC").is_none_or(|flag| flag == 0.0);
