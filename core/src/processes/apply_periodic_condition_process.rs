@@ -327,7 +327,7 @@ impl Wanted {
 
     /// The constraints of a node on the axis: vectors are along it.
     fn on_axis(&self, node: u32) -> Vec<MasterSlaveConstraint> {
-        let axis = axis_of(&self.congruence.rotation);
+        let axis = self.congruence.axis;
         let lead = (0..3).max_by(|&a, &b| axis[a].abs().total_cmp(&axis[b].abs())).unwrap_or(0);
         let of_variable = |variable: &Periodic| match variable {
             Periodic::Number(_) => Vec::new(),
@@ -379,14 +379,6 @@ impl Images {
     fn meet(&self) -> bool {
         self.masters.iter().all(|masters| masters.len() == 1)
     }
-}
-
-/// Direction that a rotation leaves as it is: the longest column of R + Rᵀ + (1 − tr R) I.
-fn axis_of(r: &[[f64; 3]; 3]) -> [f64; 3] {
-    let trace = r[0][0] + r[1][1] + r[2][2];
-    let entry = |i: usize, j: usize| r[i][j] + r[j][i] + if i == j { 1.0 - trace } else { 0.0 };
-    let columns = [0, 1, 2].map(|j| [0, 1, 2].map(|i| entry(i, j)));
-    columns.into_iter().max_by(|a, b| norm(*a).total_cmp(&norm(*b))).unwrap_or([0.0, 0.0, 1.0])
 }
 
 fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {

@@ -12,6 +12,8 @@ const ROUND_OFF: f64 = 1e-15;
 pub(super) struct Congruence {
     /// R, row by row.
     pub rotation: [[f64; 3]; 3],
+    /// Axis of the rotation, of any length; it does not matter without one.
+    pub axis: [f64; 3],
     centre: [f64; 3],
     shift: [f64; 3],
 }
@@ -23,13 +25,13 @@ impl Congruence {
         let turn = Unit::try_new(Vector3::from(axis), 0.0).map(|axis| Rotation3::from_axis_angle(&axis, angle));
         let matrix = turn.filter(|_| angle != 0.0).map_or_else(Matrix3::identity, Rotation3::into_inner);
         let entry = |i, j| if matrix[(i, j)].abs() > ROUND_OFF { matrix[(i, j)] } else { 0.0 };
-        Self { rotation: [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))), centre, shift }
+        Self { rotation: [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))), axis, centre, shift }
     }
 
     /// Its inverse.
     pub fn inverse(&self) -> Self {
         let rotation = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.rotation[j][i]));
-        Self { rotation, centre: add(self.centre, self.shift), shift: self.shift.map(|d| -d) }
+        Self { rotation, axis: self.axis, centre: add(self.centre, self.shift), shift: self.shift.map(|d| -d) }
     }
 
     /// Image of a point.

@@ -37,38 +37,19 @@ fn leader<'c>(
 
 /// Constrains the multipliers of the slave nodes of patches, which form the sets of these names.
 pub(super) fn constrain(part: &mut ModelPart, patches: &Patches, names: &[String], multiplier: Multiplier) {
+    if !multiplier.is_unknown() {
+        return;
+    }
     let space = part.info.domain_size;
+    let of = of_displacements(part);
     let mut new = Vec::new();
-    {
-        let of = of_displacements(part);
-        for patch in
-            (0..patches.count()).map(|patch| patch as u32).filter(|_| multiplier.is_unknown() && !of.is_empty())
-        {
-            let nodes = patches.nodes_of(patch);
-            for &node in &nodes {
-                let Some((leader, own)) = leader(&of, node, space) else { continue };
-                if nodes.binary_search(&leader).is_err() {
-                    continue;
-                }
-                let follows = |unknown: ScalarVariable, terms: Vec<(ScalarVariable, f64)>| MasterSlaveConstraint {
-                    set: Some(names[patch as usize].clone()),
-                    origin: ORIGIN.to_owned(),
-                    ..MasterSlaveConstraint::new(
-                        (node, unknown),
-                        terms.into_iter().map(|(variable, weight)| ((leader, variable), weight)).collect(),
-                    )
-                };
-                match multiplier {
-                    Multiplier::Scalar(variable) => {
-                        new.push(follows(variable.scalar(), vec![(variable.scalar(), 1.0)]));
-                    }
-                    Multiplier::Vector(variable) => new.extend(own.iter().enumerate().map(|(c, own)| {
-                        let term =
-                            |&((_, of), weight): &(NodeUnknown, f64)| (variable.component(of.offset() as u8), weight);
-                        follows(variable.component(c as u8), own.masters.iter().map(term).collect())
-                    })),
-                    Multiplier::None | Multiplier::Body => {}
-                }
+    for (patch, name) in names.iter().enumerate().filter(|_| !of.is_empty()) {
+        let nodes = patches.nodes_of(patch as u32);
+        for &node in &nodes {
+            let Some((leader, own)) = leader(&of, node, space) else { continue };
+            if nodes.binary_search(&leader).is_ok() {
+                let joined = MultipliersAtNode { set: name, node, leader };
+                new.extend(joined.follow(multiplier, &own));
             }
         }
     }
@@ -77,5 +58,40 @@ pub(super) fn constrain(part: &mut ModelPart, patches: &Patches, names: &[String
     new.retain(|own| !known.contains(&(own.set.clone(), own.slave)));
     if !new.is_empty() {
         part.add_constraints(new);
+    }
+}
+
+/// A slave node of a set and the one that it follows.
+struct MultipliersAtNode<'s> {
+    set: &'s str,
+    node: u32,
+    leader: u32,
+}
+
+impl MultipliersAtNode<'_> {
+    fn constraint(&self, unknown: ScalarVariable, terms: &[(ScalarVariable, f64)]) -> MasterSlaveConstraint {
+        let masters = terms.iter().map(|&(variable, weight)| ((self.leader, variable), weight)).collect();
+        MasterSlaveConstraint {
+            set: Some(self.set.to_owned()),
+            origin: ORIGIN.to_owned(),
+            ..MasterSlaveConstraint::new((self.node, unknown), masters)
+        }
+    }
+
+    /// The constraints of its multiplier, of which those of its displacement components are given.
+    fn follow(&self, multiplier: Multiplier, own: &[&MasterSlaveConstraint]) -> Vec<MasterSlaveConstraint> {
+        match multiplier {
+            Multiplier::Scalar(variable) => vec![self.constraint(variable.scalar(), &[(variable.scalar(), 1.0)])],
+            Multiplier::Vector(variable) => {
+                let of_component = |(c, own): (usize, &&MasterSlaveConstraint)| {
+                    let term =
+                        |&((_, of), weight): &(NodeUnknown, f64)| (variable.component(of.offset() as u8), weight);
+                    let terms: Vec<(ScalarVariable, f64)> = own.masters.iter().map(term).collect();
+                    self.constraint(variable.component(c as u8), &terms)
+                };
+                own.iter().enumerate().map(of_component).collect()
+            }
+            Multiplier::None | Multiplier::Body => Vec::new(),
+        }
     }
 }
