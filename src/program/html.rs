@@ -7,10 +7,12 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 use zelus_core::diagnostics::{Diagnostic, Place};
 use zelus_core::io::{Mark, replace_own_file};
-use zelus_core::model::variables;
 use zelus_core::{Error, Result};
 
 use super::colours::MAP;
+use super::deformation;
+use super::picture::{self, PictureOptions};
+use super::quantities;
 use super::report::{check_output, is_report};
 use super::results::find;
 use super::say::say;
@@ -36,8 +38,10 @@ pub(super) struct ReportArguments {
     /// The report of a run (`zelus run DECK --report run.json`).
     report: PathBuf,
     /// The HTML page to write.
-    #[arg(short, long, default_value = "report.html")]
+    #[arg(short, long, default_value = "report.html", conflicts_with = "file")]
     output: PathBuf,
+    #[command(flatten)]
+    picture: PictureOptions,
 }
 
 /// Writes the page.
@@ -45,7 +49,10 @@ pub(super) struct ReportArguments {
 /// # Errors
 /// A file that is no report, results that cannot be read, an output that cannot be written or would replace something else.
 pub(super) fn run(arguments: &ReportArguments) -> Result<()> {
-    let ReportArguments { report: path, output } = arguments;
+    let ReportArguments { report: path, output, picture } = arguments;
+    if let Some(file) = &picture.file {
+        return picture::write(file, path, &read(path)?, picture);
+    }
     check_output("the page", output, &[path], Mark::Begins(&[MARK]))?;
     let report = read(path)?;
     let (views, missing) = views(path)?;
@@ -93,6 +100,8 @@ fn page(report: &Value, views: &[Value], missing: &[String]) -> String {
         "missing": missing,
         "colours": MAP,
         "quantities": quantities(report, views),
+        "first_fields": quantities::FIRST_FIELDS,
+        "deformation": [deformation::SEEN, deformation::AIM],
     });
     let data = data.to_string().replace("</", "<\\/");
     let title = report["problem"].as_str().unwrap_or_default();
@@ -101,11 +110,12 @@ fn page(report: &Value, views: &[Value], missing: &[String]) -> String {
     format!("{MARK}\n{}", page.replace("{{data}}", &data))
 }
 
-/// Descriptions of the fields of all pictures and of the results of the report, by name.
-fn quantities(report: &Value, views: &[Value]) -> BTreeMap<String, &'static str> {
+/// Words and unit of the fields of all pictures and of the results of the report, by name.
+fn quantities(report: &Value, views: &[Value]) -> BTreeMap<String, [String; 2]> {
     let fields = views.iter().filter_map(|view| view["steps"].as_array()).flatten();
     let fields = fields.filter_map(|step| step["fields"].as_array()).flatten().filter_map(|field| field[0].as_str());
     let results = report["largest"].as_object().into_iter().flatten().map(|(name, _)| name.as_str());
-    let known = |name: &str| Some((name.to_owned(), variables().get(name)?.about));
-    fields.chain(results).filter_map(known).collect()
+    let mut all: Vec<&str> = quantities::names().to_vec();
+    all.extend(fields.chain(results));
+    all.into_iter().map(|name| (name.to_owned(), [quantities::in_words(name), quantities::unit(name)])).collect()
 }

@@ -2,6 +2,7 @@
 
 mod catalogue;
 mod colours;
+mod deformation;
 mod diff;
 mod example;
 mod html;
@@ -12,8 +13,10 @@ mod manual;
 mod matching;
 mod meshes;
 mod partition;
+mod picture;
 mod problems;
 mod progress;
+mod quantities;
 mod report;
 mod results;
 mod run;
@@ -88,7 +91,8 @@ enum Command {
     Partition(partition::PartitionArguments),
     /// Compare two result sets by node and field; exit code 0 if they are equal, 1 if not.
     Diff(diff::DiffArguments),
-    /// Write a page about a run: the deformed model, largest stresses, reactions, contact forces, warnings and convergence.
+    /// Write a page about a run: the deformed model, largest stresses, reactions, contact forces, warnings and convergence. With --picture
+    /// write the deformed model as a PNG file instead.
     Report(html::ReportArguments),
     /// List the names that a deck may use: an overview, those of a kind, or those about a word.
     List {

@@ -9,6 +9,7 @@ use zelus_core::Result;
 use zelus_core::geometry::{Facet, Shape};
 use zelus_core::io::results::{Column, Dataset};
 
+use super::deformation::displacements;
 use super::results::Series;
 use super::stress_columns::with_invariants;
 
@@ -22,10 +23,10 @@ const MOST_TETRAHEDRA: usize = 400_000;
 const MOST_EDGES: usize = 600_000;
 
 /// A face that is seen: its corners in order, and where it has them the nodes in the middle of its edges and its own.
-struct Face {
-    body: usize,
-    ring: Vec<u32>,
-    middle: Option<u32>,
+pub(super) struct Face {
+    pub body: usize,
+    pub ring: Vec<u32>,
+    pub middle: Option<u32>,
     is_curved: bool,
 }
 
@@ -40,7 +41,7 @@ impl Face {
     }
 
     /// Triangles that cover it, with its orientation.
-    fn triangles(&self, out: &mut Vec<u32>) {
+    pub(super) fn triangles(&self, out: &mut Vec<u32>) {
         let count = self.ring.len();
         if let Some(middle) = self.middle {
             (0..count).for_each(|at| out.extend([middle, self.ring[at], self.ring[(at + 1) % count]]));
@@ -65,7 +66,7 @@ impl Face {
 }
 
 /// The body of each cell: cells that share points and have the same properties; bodies are numbered in the order of their first cell.
-fn bodies(data: &Dataset) -> (Vec<usize>, usize) {
+pub(super) fn bodies(data: &Dataset) -> (Vec<usize>, usize) {
     let mut parent: Vec<u32> = (0..data.points.len() as u32).collect();
     fn root(parent: &mut [u32], mut at: u32) -> u32 {
         while parent[at as usize] != at {
@@ -92,7 +93,7 @@ fn bodies(data: &Dataset) -> (Vec<usize>, usize) {
 }
 
 /// The faces that only one cell of a body has, by body; of surfaces all, and of lines none.
-fn faces(data: &Dataset, bodies: &[usize]) -> Vec<Face> {
+pub(super) fn faces(data: &Dataset, bodies: &[usize]) -> Vec<Face> {
     const NOTHING: u32 = u32::MAX;
     // Corners in ascending order with the body; cell and face.
     let mut sides: Vec<([u32; 5], u32, u32)> = Vec::new();
@@ -147,6 +148,7 @@ fn corners_of(face: &Facet) -> usize {
 fn tetrahedra(points: &[u32], corners: usize) -> Vec<[u32; 4]> {
     let of: &[[usize; 4]] = match corners {
         4 => &[[0, 1, 2, 3]],
+        5 => &[[0, 1, 2, 4], [0, 2, 3, 4]],
         6 => &[[0, 1, 2, 5], [0, 1, 5, 4], [0, 4, 5, 3]],
         8 => &[[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]],
         _ => &[],
@@ -155,7 +157,7 @@ fn tetrahedra(points: &[u32], corners: usize) -> Vec<[u32; 4]> {
 }
 
 /// Tetrahedra of the cells of a picture, by body.
-fn inside(data: &Dataset, bodies: &[usize], count: usize) -> Vec<Vec<[u32; 4]>> {
+pub(super) fn inside(data: &Dataset, bodies: &[usize], count: usize) -> Vec<Vec<[u32; 4]>> {
     let mut out = vec![Vec::new(); count];
     for ((shape, points), &body) in data.cells.iter().zip(bodies).filter(|((shape, _), _)| shape.cell().dim == 3) {
         out[body].extend(tetrahedra(points, corners(shape)));
@@ -163,10 +165,11 @@ fn inside(data: &Dataset, bodies: &[usize], count: usize) -> Vec<Vec<[u32; 4]>> 
     out
 }
 
-/// Corners of a solid cell: those of two opposite faces, or of a tetrahedron.
+/// Corners of a solid cell: those of two opposite faces, or of a tetrahedron or pyramid.
 fn corners(shape: Shape) -> usize {
     match shape.cell().faces.len() {
         4 => 4,
+        5 if matches!(shape, Shape::Pyramid5 | Shape::Pyramid13) => 5,
         5 => 6,
         _ => 8,
     }
@@ -250,14 +253,8 @@ pub(super) fn view(name: &str, series: &Series) -> Result<Option<Value>> {
         }
         let moved = data.points.iter().zip(&first.points).any(|(x, y)| x != y);
         let given = data.point_data.iter().find(|column| column.name == "DISPLACEMENT" && column.components == 3);
-        let displacement: Vec<f64> = match given {
-            _ if moved => {
-                let way = |&at: &u32| [0, 1, 2].map(|c| data.points[at as usize][c] - first.points[at as usize][c]);
-                seen.iter().flat_map(way).collect()
-            }
-            Some(column) => of_points(column, &seen),
-            None => vec![0.0; 3 * seen.len()],
-        };
+        let ways = displacements(&data, &first);
+        let displacement: Vec<f64> = seen.iter().flat_map(|&point| ways[point as usize]).collect();
         let fields = with_invariants(&data);
         let kept = fields.iter().filter(|column| !left_out.contains_key(&column.name));
         // Without a text of its own a field is that of the displacements.
@@ -305,7 +302,7 @@ fn left_out(columns: &[Cow<'_, Column>], points: usize) -> BTreeMap<String, usiz
 }
 
 /// Whether the first cell of a body is a surface.
-fn is_flat(data: &Dataset, bodies: &[usize], body: usize) -> bool {
+pub(super) fn is_flat(data: &Dataset, bodies: &[usize], body: usize) -> bool {
     let first = bodies.iter().position(|own| *own == body);
     first.is_some_and(|cell| data.cells.shapes[cell].cell().dim < 3)
 }
@@ -405,8 +402,9 @@ mod tests {
         let cross = |a: [f64; 3], b: [f64; 3]| {
             [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
         };
-        for shape in [Shape::Hex8, Shape::Hex20, Shape::Hex27, Shape::Tet4, Shape::Tet10, Shape::Prism6, Shape::Prism15]
-        {
+        let shapes =
+            [Shape::Hex8, Shape::Hex20, Shape::Hex27, Shape::Tet4, Shape::Tet10, Shape::Prism6, Shape::Prism15];
+        for shape in shapes.into_iter().chain([Shape::Pyramid5, Shape::Pyramid13]) {
             let points = shape.cell().points;
             let mut data = Dataset { points: points.to_vec(), ..Dataset::default() };
             data.cells.push(1, 0, shape, 0..points.len() as u32);

@@ -15,6 +15,7 @@ mod modelers;
 mod new_user;
 mod nothing_lost;
 mod page;
+mod picture;
 mod pyramids_and_prisms;
 mod ranks_as_threads;
 mod registry;

@@ -104,7 +104,7 @@ fn a_browser_draws_the_page() {
 }
 
 /// A quarter of a pin pressed into a hole 0.01 narrower, whose face is the slave.
-fn press_fit() -> Deck {
+pub(crate) fn press_fit() -> Deck {
     let mut mesh = Mesh::new(3);
     let ring = |radii: [f64; 2]| {
         move |[r, turn, z]: [f64; 3]| {

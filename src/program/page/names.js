@@ -1,26 +1,10 @@
-// Names of quantities in words, their components, and their units by dimension.
-const WORDS = {
-  DISPLACEMENT: "displacement", REACTION: "reaction", TEMPERATURE: "temperature", REACTION_FLUX: "reaction flux",
-  CAUCHY_STRESS_VECTOR: "Cauchy stress", GREEN_LAGRANGE_STRAIN_VECTOR: "Green–Lagrange strain", VON_MISES_STRESS: "von Mises stress",
-  MAX_PRINCIPAL_STRESS: "largest principal stress", MIN_PRINCIPAL_STRESS: "smallest principal stress", TRESCA_STRESS: "Tresca stress",
-  HYDROSTATIC_PRESSURE: "hydrostatic pressure", SAFETY_FACTOR: "safety factor to yield", CONTACT_PRESSURE: "contact pressure",
-  CONTACT_TRACTION: "contact traction", CONTACT_GAP: "contact gap", CONTACT_SLIP: "contact slip", CONTACT_STATUS: "contact status",
-  CONTACT_FORCE: "contact force", WEAR_DEPTH: "wear depth",
-};
-const UNITS = {
-  DISPLACEMENT: "length", CONTACT_GAP: "length", CONTACT_SLIP: "length", WEAR_DEPTH: "length", REACTION: "force", CONTACT_FORCE: "force",
-  CONTACT_PRESSURE: "force/area", CONTACT_TRACTION: "force/area", CAUCHY_STRESS_VECTOR: "force/area", TEMPERATURE: "temperature",
-  REACTION_FLUX: "power", GREEN_LAGRANGE_STRAIN_VECTOR: "–", CONTACT_STATUS: "0 open, 1 stick, 2 slip", SAFETY_FACTOR: "–",
-};
-
+// Names of quantities in words and their units, which the program gives, and their components.
 function inWords(name) {
-  return WORDS[name] || name.toLowerCase().replaceAll("_", " ");
+  return quantities[name] ? quantities[name][0] : name.toLowerCase().replaceAll("_", " ");
 }
 
-// The unit: that of the table, or the one in brackets at the end of the description of the variable.
 function unitOf(name) {
-  const found = /\(([^()]*)\)\.?$/.exec(quantities[name] || "");
-  return UNITS[name] || (found ? found[1].replace("force per area", "force/area") : "");
+  return quantities[name] ? quantities[name][1] : "";
 }
 
 function titleOf(name, component) {

@@ -1,8 +1,8 @@
 // The deformed model: coloured by a field, deformed by a factor, cut by a plane, body by body, step by step.
-const FIRST_FIELDS = ["VON_MISES_STRESS", "CONTACT_PRESSURE", "TEMPERATURE", "DISPLACEMENT"];
 // Largest displacement by the size of the model from which on the true deformation is well seen, and that which a factor aims at.
-const SEEN = 0.02, AIM = 0.06;
-const VIEWS = { oblique: [-0.6, 0.5], "along x": [-Math.PI / 2, 0], "along y": [0, Math.PI / 2], "along z": [0, 0] };
+const [SEEN, AIM] = deformation;
+// Angles about the axis upwards, which is z in space and y in the plane, and about the axis to the right.
+const VIEWS = { oblique: [0.46, 0.46], "along x": [-Math.PI / 2, 0], "along y": [0, 0], "along z": [0, Math.PI / 2] };
 // Words after # in the address of the page, by which it opens as wanted, e.g. #field=CONTACT_PRESSURE&cut=z&at=0.5.
 const wanted = new URLSearchParams(location.hash.slice(1));
 
@@ -80,7 +80,7 @@ function show(view, number_) {
   const [edgeBox, edgeLabel] = check("edges of cells", false, draw);
   const bodies = view.bodies.map((body, at) => { const [box_, label] = check(nameOf(body, at), true, () => { cut(); }); return { ...body, box: box_, label }; });
   const several = bodies.length > 1;
-  fieldList.value = [wanted.get("field"), ...FIRST_FIELDS].find((name) => names.some(([own]) => own === name)) || (names[0] || [""])[0];
+  fieldList.value = [wanted.get("field"), ...first_fields].find((name) => names.some(([own]) => own === name)) || (names[0] || [""])[0];
 
   controls.append(fieldLabel, partLabel, rangeLabel,
     element("div", { class: "row" }, element("span", {}, "step"), stepSlider, stepSaid, ...(last ? [play] : [])),
@@ -141,7 +141,8 @@ function show(view, number_) {
 
   function turn() {
     const [a, b] = state.angles, [ca, sa, cb, sb] = [Math.cos(a), Math.sin(a), Math.cos(b), Math.sin(b)];
-    return [ca, sb * sa, -cb * sa, 0, cb, sb, sa, -sb * ca, cb * ca];
+    const [x, y, z] = [[ca, sb * sa, -cb * sa], [0, cb, sb], [sa, -sb * ca, cb * ca]];
+    return flat ? [...x, ...y, ...z] : [...x, ...z.map((part) => -part), ...y];
   }
 
   const sight = () => { const t = turn(); return [t[2], t[5], t[8]]; };
