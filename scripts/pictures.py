@@ -1,63 +1,93 @@
 #!/usr/bin/env python3
-"""Runs the problems of docs/gallery.md and draws them into docs/figures/gallery; draws the times of docs/performance.md.
+"""Draws the pictures of the documents: those of docs/gallery.md, of the objects of assemblies, and the chart of docs/performance.md.
 
     cargo build --release
-    pip install pyvista matplotlib
+    pip install gmsh matplotlib
     scripts/pictures.py [--only TEXT] [--program PATH]
 
-Examples are run as they are, cases of verification/ on the mesh that is named here; in each, a result file with the default output
-variables is added. Bodies are drawn as they are deformed, by the factor that the picture states."""
-import argparse, importlib.util, json, os, re, shutil, subprocess, sys, tempfile
+Each problem is run with a result file of the default output variables, and `zelus report --picture` draws it: examples as they are,
+cases of verification/ on the mesh that is named here, assemblies as scripts/assemblies.py writes their decks. gmsh meshes the lug in space,
+matplotlib draws the chart."""
+import argparse, importlib.util, json, os, shutil, subprocess, sys, tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-FIGURES = os.path.join(ROOT, "docs", "figures", "gallery")
+FIGURES = os.path.join(ROOT, "docs", "figures")
 sys.path.insert(0, os.path.join(ROOT, "verification"))
 
-STRESS, PRESSURE = "VON_MISES_STRESS", "CONTACT_PRESSURE"
-# Name: (variant of the case or None for an example, place of the mesh among those of the case, field, factor of the deformation, zoom on
-# where the field is largest)
-PROBLEMS = {
-    "disc_on_block": (None, 0, STRESS, 1, 4),
-    "lug": (None, 0, STRESS, 20, 1),
-    "hertz_line_contact": (None, 0, STRESS, 1, 6),
-    "hertz_sphere": (None, 0, STRESS, 1, 5),
-    "shrink_fit": (None, 0, STRESS, 1, 1),
-    "bars_in_thermal_contact": (None, 0, "TEMPERATURE", 0, 1),
-    "hertz_in_space": ("ALM", 0, STRESS, 1, 3),
-    "cattaneo_mindlin": (0, 1, STRESS, 1, 8),
-    "ironing": (0, 0, STRESS, 1, 1),
-    "two_arches": (0, 0, STRESS, 1, 1),
-    "wavy_surface": (0, 0, STRESS, 1, 2),
-    "press_fit": (0, 1, STRESS, 1, 1),
-    "tube_torsion": (0, 1, STRESS, 1, 1),
-    "punch_rounded": (0, 1, STRESS, 1, 10),
-    "shaft_pull_out": (0, 0, STRESS, 1, 1),
-    "ring_impact": (0, 0, STRESS, 1, 1),
-    "wedge": (0, 1, STRESS, 1, 1),
-    "stack_gravity": (0, 0, STRESS, 1, 1),
-    "tie_bending": (0, 1, STRESS, 1, 1),
+N_MM = "--unit N/mm²"
+# Name: options of the picture, and deck of the example or (variant, place of the mesh among those of the case).
+EXAMPLES = {
+    "lug": (f"--mirror x --mirror z --cut z=0.01 --view 1,-0.35,0.9 --factor 5 --inset 4 {N_MM}", "InSpace.json"),
+    "disc_on_block": (f"--mirror x --inset 5 --factor 1 {N_MM}", "ProjectParameters.json"),
+    "hertz_line_contact": (f"--mirror x --inset 8 --factor 1 {N_MM}", "ProjectParameters.json"),
+    "hertz_sphere": (f"--mirror x --mirror y --cut y=0.001 --factor 1 --inset 6 {N_MM}", "ProjectParameters.json"),
+    "shrink_fit": (f"--mirror x --mirror y --factor 1 {N_MM}", "ProjectParameters.json"),
+    "brake_disc": ("--revolve 270 --field TEMPERATURE --factor 1", "ProjectParameters.json"),
+    "bars_in_thermal_contact": ("--field TEMPERATURE", "ProjectParameters.json"),
+}
+CASES = {
+    "tube_torsion": ("--factor 5 --view -0.5,-1,0.8", ("ALM", 2)),
+    "shaft_pull_out": ("--revolve 270 --factor 20", ("ALM", 1)),
+    "hertz_in_space": ("--mirror x --mirror y --cut y=0.001 --factor 1 --inset 4", ("ALM", 0)),
+    "press_fit": ("--mirror x --mirror y --factor 1", (0, 1)),
+    "cattaneo_mindlin": ("--inset 8 --factor 1", (0, 1)),
+    "ironing": ("--step all --width 800 --factor 1", ("μ = 0.3, 30 steps", 1)),
+    "two_arches": ("--factor 1", (0, 0)),
+    "wavy_surface": ("--mirror x --inset 3 --factor 1", (0, 0)),
+    "punch_rounded": ("--mirror x --inset 10 --factor 1", (0, 1)),
+    "ring_impact": ("--factor 1", (0, 0)),
+    "wedge": ("--factor 1", (0, 1)),
+    "stack_gravity": ("", (0, 0)),
+    "tie_bending": ("", (0, 1)),
+}
+ASSEMBLIES = {
+    "kinematic_coupling": f"--view 1,-0.5,0.35 {N_MM}",
+    "distributing_coupling": f"--view 0.4,-1,0.35 {N_MM}",
+    "resultant": f"--view -0.5,-1,0.6 {N_MM}",
+    "slope": "--field DISPLACEMENT --unit mm --view -0.3,-1,0.3",
+    "cyclic_sector": f"--view -0.3,-0.5,1 {N_MM}",
+    "orthotropic_tube": "--mirror y --field DISPLACEMENT --unit mm --view 0.6,-1,0.5",
+    "bolt": f"--view -0.3,-1,0.45 --factor 20 {N_MM}",
 }
 VTU = {"python_module": "vtu_output_process", "Parameters": {"model_part_name": "", "output_path": "pictures"}}
 
 
-def add_output(folder, program, command):
-    """Runs a deck of a folder with a result file more, and gives what the program said."""
-    path = os.path.join(folder, "ProjectParameters.json")
+def prepare(folder, deck_name):
+    """Adds a result file with the default variables to a deck that has none."""
+    path = os.path.join(folder, deck_name)
     with open(path) as file:
         deck = json.load(file)
     process = json.loads(json.dumps(VTU))
-    process["Parameters"]["model_part_name"] = deck["solver_settings"]["model_part_name"]
-    deck["output_processes"] = {"pictures": [process]}
+    solver = deck["solver_settings"]
+    parts = [solver, *(own for own in solver.values() if isinstance(own, dict))]
+    process["Parameters"]["model_part_name"] = next(own["model_part_name"] for own in parts if "model_part_name" in own)
+    for key in ("output_processes", "processes"):
+        for name, listed in deck.get(key, {}).items():
+            deck[key][name] = [own for own in listed if not own.get("python_module", "").startswith("vt")]
+    deck.setdefault("output_processes", {})["pictures"] = [process]
     with open(path, "w") as file:
         json.dump(deck, file)
-    return subprocess.run([program, *command], cwd=folder, capture_output=True, text=True)
 
 
-def run_example(name, program, folder):
+def run_example(name, deck_name, program, folder):
     shutil.copytree(os.path.join(ROOT, "examples", name), folder, dirs_exist_ok=True)
-    done = add_output(folder, program, ["run", "ProjectParameters.json"])
+    if name == "lug":
+        import gmsh
+        gmsh.initialize(interruptible=False)
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.open(os.path.join(folder, "lug_in_space.geo"))
+        gmsh.model.mesh.generate(3)
+        gmsh.model.mesh.setOrder(2)
+        gmsh.write(os.path.join(folder, "lug_in_space.msh"))
+        gmsh.finalize()
+    prepare(folder, deck_name)
+    run_deck(deck_name, program, folder)
+
+
+def run_deck(deck_name, program, folder):
+    done = subprocess.run([program, "run", deck_name, "--report", "report.json"], cwd=folder, capture_output=True, text=True)
     if done.returncode:
-        sys.exit(f"{name}: {done.stdout}{done.stderr}")
+        sys.exit(f"{folder}: {done.stdout}{done.stderr}")
 
 
 class Recorder:
@@ -69,7 +99,8 @@ class Recorder:
         self.program, self.folder = program, folder
 
     def run(self, command, cwd, **_):
-        done = add_output(cwd, self.program, command[1:])
+        prepare(cwd, command[2])
+        done = subprocess.run([self.program, *command[1:]], cwd=cwd, capture_output=True, text=True)
         shutil.copytree(cwd, self.folder, dirs_exist_ok=True)
         return done
 
@@ -85,63 +116,31 @@ def run_case(name, variant, mesh, program, folder):
     case.solve(case.meshes[mesh], **case.variants[variant if variant in variants else variants[0]])
 
 
-def last_result(folder):
-    series = [name for name in os.listdir(os.path.join(folder, "pictures")) if name.endswith(".pvd")]
-    with open(os.path.join(folder, "pictures", series[0])) as file:
-        files = re.findall(r'file="([^"]+)"', file.read())
-    return os.path.join(folder, "pictures", files[-1])
+def run_assembly(name, program, folder):
+    """Runs a deck of scripts/assemblies.py; the folder with its report."""
+    import assemblies
+    from lib import solution
+    if name == "bolt":
+        folder = assemblies.bolt(program, folder)
+        prepare(folder, "ProjectParameters.json")
+        run_deck("ProjectParameters.json", program, folder)
+        return folder
+    scratch = os.path.join(folder, "run")
+    solution.PROGRAM, solution.subprocess = program, Recorder(program, scratch)
+    assemblies.write(name, program, os.path.join(folder, "deck"))
+    return scratch
 
 
-def draw(path, field, factor, zoom, to):
-    import pyvista
-    pyvista.OFF_SCREEN = True
-    mesh = pyvista.read(path)
-    if factor and "DISPLACEMENT" in mesh.point_data:
-        mesh.points = mesh.points + factor * mesh.point_data["DISPLACEMENT"]
-    plotter = pyvista.Plotter(off_screen=True, window_size=(460, 400))
-    plotter.background_color = "white"
-    plotter.add_mesh(mesh, scalars=field, cmap="viridis", show_edges=True, edge_color="white", edge_opacity=0.25,
-                     show_scalar_bar=False)
-    size = [mesh.bounds[2 * i + 1] - mesh.bounds[2 * i] for i in range(3)]
-    if size[2] < 1e-9 * max(size):
-        plotter.view_xy()
-    else:
-        # from the side of the planes of symmetry, which quarter models have at x = 0 and y = 0
-        plotter.view_vector((-1, -1, 0.5))
-    values = mesh.point_data[field]
-    if zoom > 1:
-        way = [a - b for a, b in zip(plotter.camera.position, plotter.camera.focal_point)]
-        plotter.camera.focal_point = mesh.points[values.argmax()]
-        plotter.camera.position = [a + b for a, b in zip(plotter.camera.focal_point, way)]
-    plotter.camera.zoom(1.1 * zoom)
-    plotter.screenshot(to)
-    plotter.close()
-    add_bar(to, field, float(values.min()), float(values.max()))
-    shrink(to)
-
-
-def add_bar(path, field, least, most):
-    """The colours with their numbers, right of a picture."""
-    from matplotlib import colormaps
-    from PIL import Image, ImageDraw
-    with Image.open(path) as picture:
-        whole = Image.new("RGB", (picture.width + 100, picture.height), "white")
-        whole.paste(picture.convert("RGB"))
-    pen, left, top, height = ImageDraw.Draw(whole), whole.width - 88, 60, 300
-    for y in range(height):
-        colour = tuple(int(255 * part) for part in colormaps["viridis"](1 - y / (height - 1))[:3])
-        pen.line((left, top + y, left + 18, top + y), fill=colour)
-    for share in (0, 0.25, 0.5, 0.75, 1):
-        pen.text((left + 24, top + (1 - share) * (height - 1) - 6), f"{least + share * (most - least):.3g}", fill="black")
-    pen.text((left - 10, 38), field.replace("_", " ").lower(), fill="black")
-    whole.save(path)
-
-
-def shrink(path):
-    """Fewer colours, so that a picture takes some tens of kilobytes."""
-    from PIL import Image
-    with Image.open(path) as image:
-        image.convert("RGB").quantize(128).save(path, optimize=True)
+def draw(folder, options, program, to):
+    """The picture of the run of a folder."""
+    os.makedirs(os.path.dirname(to), exist_ok=True)
+    # a picture of another program is not replaced
+    if os.path.exists(to):
+        os.remove(to)
+    done = subprocess.run([program, "report", "report.json", "--picture", to, *options.split()], cwd=folder, capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(f"{to}: {done.stdout}{done.stderr}")
+    print(os.path.relpath(to, ROOT), os.path.getsize(to) // 1000, "kB", flush=True)
 
 
 def draw_times(to):
@@ -161,21 +160,21 @@ def draw_times(to):
         own.append(float(row[2]))
         other.append(float(row[3].split("(")[0]))
     places = range(len(names))
-    figure, axes = plot.subplots(figsize=(7, 4.0), dpi=90)
-    axes.barh([p - 0.2 for p in places], own, 0.38, label="zelus", color="#20639b")
-    axes.barh([p + 0.2 for p in places], other, 0.38, label="Kratos", color="#c9c9c9")
+    figure, axes = plot.subplots(figsize=(10, 0.62 * len(names) + 0.9), dpi=160)
+    axes.barh([p - 0.2 for p in places], own, 0.38, label="zelus", color="#0bb1c9")
+    axes.barh([p + 0.2 for p in places], other, 0.38, label="Kratos", color="#c3c7cf")
     for p, a, b in zip(places, own, other):
-        axes.text(b, p + 0.2, f" {b / a:.1f}×", va="center", fontsize=8)
+        axes.text(b, p + 0.2, f" {b / a:.1f}×", va="center", fontsize=10)
     axes.set_xscale("log")
-    axes.set_yticks(list(places), names, fontsize=7)
+    axes.set_yticks(list(places), names, fontsize=9)
     axes.invert_yaxis()
-    axes.set_xlabel("seconds, two threads, both with amgcl (docs/performance.md)", fontsize=8)
-    axes.legend(fontsize=8)
+    axes.set_xlabel("seconds, two threads, both with amgcl (docs/performance.md)", fontsize=10)
+    axes.legend(fontsize=10)
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     figure.tight_layout()
     figure.savefig(to)
-    shrink(to)
+    print(os.path.relpath(to, ROOT), os.path.getsize(to) // 1000, "kB", flush=True)
 
 
 def main():
@@ -184,19 +183,22 @@ def main():
     parser.add_argument("--program", default=os.path.join(ROOT, "target", "release", "zelus"))
     options = parser.parse_args()
     program = os.path.abspath(options.program)
-    os.makedirs(FIGURES, exist_ok=True)
-    for name, (variant, mesh, field, factor, zoom) in PROBLEMS.items():
+    gallery = os.path.join(FIGURES, "gallery")
+    for name, (words, source) in {**EXAMPLES, **CASES}.items():
         if options.only not in name:
             continue
         with tempfile.TemporaryDirectory() as folder:
-            if variant is None:
-                run_example(name, program, folder)
+            if name in EXAMPLES:
+                run_example(name, source, program, folder)
             else:
-                run_case(name, variant, mesh, program, folder)
-            draw(last_result(folder), field, factor, zoom, os.path.join(FIGURES, name + ".png"))
-        print(name, flush=True)
+                run_case(name, *source, program, folder)
+            draw(folder, words, program, os.path.join(gallery, name + ".png"))
+    for name, words in ASSEMBLIES.items():
+        if options.only in name:
+            with tempfile.TemporaryDirectory() as folder:
+                draw(run_assembly(name, program, folder), words, program, os.path.join(FIGURES, "assemblies", name + ".png"))
     if options.only in "times":
-        draw_times(os.path.join(FIGURES, "times.png"))
+        draw_times(os.path.join(gallery, "times.png"))
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ pub(super) const FIRST_FIELDS: [&str; 4] = ["VON_MISES_STRESS", "CONTACT_PRESSUR
 const KNOWN: [(&str, &str, &str); 19] = [
     ("DISPLACEMENT", "displacement", "length"),
     ("REACTION", "reaction", "force"),
-    ("TEMPERATURE", "temperature", "temperature"),
+    ("TEMPERATURE", "temperature", "degrees"),
     ("REACTION_FLUX", "reaction flux", "power"),
     ("CAUCHY_STRESS_VECTOR", "Cauchy stress", "force/area"),
     ("GREEN_LAGRANGE_STRAIN_VECTOR", "Green–Lagrange strain", "–"),

@@ -60,7 +60,7 @@ fn the_first_contact_has_the_pressure_of_hertz() {
     let report = read_json(&scratch.path().join("disc/run.json")).expect("a report");
     let pressure = report["largest"]["CONTACT_PRESSURE"].as_f64().expect("a pressure");
     assert!((pressure / 2710.0 - 1.0).abs() < 0.02, "{pressure}");
-    assert!(scratch.path().join("disc/page.html").is_file());
+    assert!(scratch.path().join("disc/page.html").is_file() && scratch.path().join("disc/disc.png").is_file());
     // The finished deck of the example is the one that the page makes.
     let output = zelus(
         &root().join("examples/disc_on_block"),
@@ -81,6 +81,17 @@ fn the_first_contact_has_the_pressure_of_hertz() {
 #[test]
 fn the_lug_behaves_as_its_page_says() {
     let scratch = run_page("lug.md");
+    let report = read_json(&scratch.path().join("joint/run.json")).expect("a report");
+    let step = report["steps"].as_array().expect("steps").last().expect("a step");
+    let supports = step["balance"]["supports"].as_array().expect("supports");
+    let bottom = supports.iter().find(|own| own["part"] == "Structure.Bottom").expect("the lower support");
+    let held = bottom["reaction"][1].as_f64().expect("a reaction");
+    // ANALYTIC: the support takes the load of 1000 N; 1e-4 of the criterion of convergence
+    assert!((held + 1000.0).abs() < 0.1, "{held}");
+    for picture in ["stress.png", "pressure.png"] {
+        let bytes = std::fs::read(scratch.path().join("joint").join(picture)).expect("a picture");
+        assert!(bytes.starts_with(b"\x89PNG") && bytes.len() > 20_000, "{picture}");
+    }
     let text = std::fs::read_to_string(root().join("docs/lug.md")).expect("the page");
     let rows: Vec<Vec<f64>> = text
         .lines()

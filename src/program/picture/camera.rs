@@ -58,10 +58,10 @@ impl Camera {
         self.scale = if scale.is_finite() { scale } else { 1.0 };
     }
 
-    /// The same direction, `times` larger, with a point in the middle of a rectangle of another picture.
-    pub fn enlarged(&self, times: f64, point: [f64; 3], [width, height]: [f64; 2]) -> Self {
-        let centre = [dot(self.axes[0], point), dot(self.axes[1], point)];
-        Self { axes: self.axes, centre, middle: [width / 2.0, height / 2.0], scale: self.scale * times }
+    /// The same direction, `times` larger, with a place of this picture in the middle of a square of another.
+    pub fn enlarged(&self, times: f64, [x, y]: [f64; 2], side: f64) -> Self {
+        let middle = [side / 2.0 - times * (x - self.middle[0]), side / 2.0 - times * (y - self.middle[1])];
+        Self { axes: self.axes, centre: self.centre, middle, scale: self.scale * times }
     }
 
     /// Place on the picture, and depth towards the eye as a length of the picture.

@@ -39,6 +39,11 @@ pub(super) fn number(value: f64) -> String {
     text.replace('-', "−")
 }
 
+/// An end of a range, round-off beside its size as 0.
+fn end(value: f64, [low, high]: Limits) -> String {
+    number(if value.abs() < 1e-4 * (high - low) { 0.0 } else { value })
+}
+
 fn raised(digit: char) -> char {
     match digit {
         '-' => '⁻',
@@ -92,7 +97,9 @@ impl Legend {
         }
         let ends = [(low, "≤ ", self.exceeds[0]), (high, "≥ ", self.exceeds[1])];
         let mut said: Vec<(f64, String)> = ends
-            .map(|(value, mark, exceeds)| (value, format!("{}{}", if exceeds { mark } else { "" }, number(value))))
+            .map(|(value, mark, exceeds)| {
+                (value, format!("{}{}", if exceeds { mark } else { "" }, end(value, self.limits)))
+            })
             .to_vec();
         let place = |value: f64| y + height * (high - value) / (high - low);
         let is_clear = |value: &f64| [low, high].iter().all(|end| (place(*value) - place(*end)).abs() > 1.1 * size);

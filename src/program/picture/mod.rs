@@ -306,6 +306,8 @@ struct Sheet {
     unit: f64,
     /// The second view: enlargement, place and size.
     inset: Option<(f64, [f64; 2], f64)>,
+    /// Least and largest place of the model.
+    model: [[f64; 2]; 2],
 }
 
 impl Sheet {
@@ -321,12 +323,24 @@ impl Sheet {
         let aside = if options.inset.is_some() { 640.0 * unit } else { 0.0 };
         let width = options.width as f64 - left - margin - aside;
         let ratio = (y[1] - y[0]) / (x[1] - x[0]).max(1e-300);
-        let height = (ratio * width + 2.0 * margin).clamp(700.0 * unit, 940.0 * unit);
+        let height = (ratio * width + 2.0 * margin).clamp(700.0 * unit, 820.0 * unit);
         camera.fit([x, y], [left, margin], [width, height - 2.0 * margin]);
         let side = (aside - 30.0 * unit).min(height - 2.0 * margin);
         let place = [options.width as f64 - margin - side, (height - side) / 2.0];
         let inset = options.inset.map(|times| (times, place, side));
-        Self { size: [options.width, height.round() as usize], unit, inset }
+        let size = [options.width, height.round() as usize];
+        let half = |own: [f64; 2]| camera.scale * (own[1] - own[0]) / 2.0;
+        let middle = [left + width / 2.0, height / 2.0];
+        let model = [[middle[0] - half(x), middle[0] + half(x)], [middle[1] - half(y), middle[1] + half(y)]];
+        Self { size, unit, inset, model }
+    }
+
+    /// The middle of the part that a second view enlarges: a place, so far from the rims that all of the part is of the model.
+    fn middle_of_part(&self, place: [f64; 3], half: f64) -> [f64; 2] {
+        std::array::from_fn(|c| {
+            let [low, high] = self.model[c];
+            if high - low > 2.0 * half { place[c].clamp(low + half, high - half) } else { (low + high) / 2.0 }
+        })
     }
 
     fn image(
@@ -338,7 +352,7 @@ impl Sheet {
         writer: &Writer,
         mut legend: Legend,
     ) -> Image {
-        let Self { size, unit, inset } = *self;
+        let Self { size, unit, inset, .. } = *self;
         let pose = &drawn.pose;
         let limits = legend.limits;
         let mut canvas = Canvas::new(size, GROUND);
@@ -356,17 +370,19 @@ impl Sheet {
             let behind = if is_hidden { " (behind)" } else { "" };
             let words = format!("max {}{behind}", number(most.value));
             match inset {
-                Some(inset) => {
-                    let near = camera.enlarged(inset.0, most.place, [inset.2; 2]);
-                    let mut canvas = Canvas::new([inset.2 as usize; 2], GROUND);
+                Some((times, _, side)) => {
+                    let middle = self.middle_of_part(place, side / times / 2.0);
+                    let near = camera.enlarged(times, middle, side);
+                    let mut canvas = Canvas::new([side as usize; 2], GROUND);
                     drawing::draw(&mut canvas, model, pose, &near, limits, 2.0 * unit);
                     let mut part = canvas.image();
-                    legend::mark(&mut part, writer, [inset.2 / 2.0; 2], &words, unit);
-                    self.add(&mut image, &part, [place[0], place[1]], writer);
+                    let [x, y, _] = near.place(most.place);
+                    legend::mark(&mut part, writer, [x, y], &words, unit);
+                    self.add(&mut image, &part, middle, writer);
                 }
                 None => legend::mark(&mut image, writer, [place[0], place[1]], &words, unit),
             }
-        } else {
+        } else if high <= low {
             legend.lines.insert(0, format!("{} everywhere", number(if least.is_finite() { least } else { 0.0 })));
         }
         let margin = 44.0 * unit;
