@@ -1,12 +1,14 @@
 //! `zelus new`: a deck to start from, made of a mesh.
 
 mod deck;
+mod formulations;
 mod histories;
 mod known_materials;
 mod materials;
 mod options;
 mod point_loads;
 mod processes;
+mod sides;
 mod stepping;
 mod supports;
 mod thickness;
@@ -34,6 +36,8 @@ const PLAIN: &str = "SmallDisplacementElement";
 const LARGE: &str = "TotalLagrangianElement";
 const MIXED: &str = "SmallDisplacementMixedVolumetricStrainElement";
 const MIXED_LARGE: &str = "TotalLagrangianMixedVolumetricStrainElement";
+/// Elements for plastic flow, which changes no volume.
+const MEAN_DILATATION: &str = "SmallDisplacementBbarElement";
 /// Poisson's ratio above which the usual ones of first order lock.
 const LOCKS: f64 = 0.49;
 
@@ -70,6 +74,11 @@ pub(super) fn run(arguments: &NewArguments) -> Result<()> {
         mesh.pairs = proximity::find_pairs(&mut mesh);
     }
     let whole = arguments.options.apply(&mut mesh)?;
+    let reasons = if is_found { sides::order(&mut mesh, whole.as_ref()) } else { Vec::new() };
+    for name in &arguments.options.slave {
+        sides::make_slave(&mut mesh, name)?;
+    }
+    let formulation = arguments.options.formulation(&mesh)?;
     let by_file = if mesh.is_large { LARGE } else { PLAIN };
     let element = arguments.element_name.clone().unwrap_or_else(|| by_file.to_owned());
     mesh.is_large = !element.starts_with("SmallDisplacement");
@@ -77,14 +86,14 @@ pub(super) fn run(arguments: &NewArguments) -> Result<()> {
     let forces = point_loads::join(&mut mesh);
     let names = Names { element: element.clone(), condition: String::new() };
     let mut document = document(&mesh, &names, &Place::file(from), &mut said);
-    let mixed = arguments.element_name.is_none() && take_mixed_elements(&mesh, &element, &mut document);
+    let other = arguments.element_name.is_none().then(|| take_mixed_elements(&mesh, &element, &mut document)).flatten();
     point_loads::add(&mesh, &mut document, space, forces.as_ref());
     let stem = from.file_stem().map_or("mesh".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from(&stem));
     let supports = supports::of(&mesh, &mut said);
     let materials = materials::text(&mesh, space, whole.as_ref(), &mut said);
     let mut texts = Histories::new(stepping::end(&mesh));
-    let deck = deck::text(&mesh, &stem, space, &supports, forces.as_ref(), &mut texts);
+    let deck = deck::text(&mesh, &stem, space, formulation, &supports, forces.as_ref(), &mut texts);
     let mut files =
         vec![("ProjectParameters.json".to_owned(), deck), ("StructuralMaterials.json".to_owned(), materials)];
     files.extend(forces.map(|file| (file.name, file.text)));
@@ -103,13 +112,17 @@ pub(super) fn run(arguments: &NewArguments) -> Result<()> {
     mdpa::write(&document, &mesh_path)?;
     said.iter().for_each(|problem| say(&problem.to_string()));
     say(&counts(&document));
-    for pair in &mesh.pairs {
+    for (at, pair) in mesh.pairs.iter().enumerate() {
         let what = if pair.tied { "tied" } else { "contact" };
-        let found = if is_found { ", found by proximity" } else { "" };
+        let found = match reasons.get(at) {
+            Some(_) if arguments.options.slave.contains(&pair.slave) => ", found by proximity".to_owned(),
+            Some(reason) => format!(", found by proximity; the slave is the side that is {reason}"),
+            None => String::new(),
+        };
         say(&format!("{what}: slave {}, master {}{found}", pair.slave, pair.master));
     }
-    if mixed {
-        say(&format!("elements: without locking, since {element} locks at Poisson's ratios above {LOCKS}"));
+    if let Some(reason) = other {
+        say(&format!("elements: without locking, since {element} locks {reason}"));
     }
     if supports.is_empty() {
         say("no supports are known: state them in the deck before it is run");
@@ -122,20 +135,24 @@ fn put(path: &Path, text: &str) -> Result<()> {
     replace_own_file(path, |file| file.write_all(text.as_bytes()))
 }
 
-/// Takes elements that do not lock where a material of the mesh hardly changes its volume; whether it did. Elements of second order stay,
-/// and rings and plane stress have none.
-fn take_mixed_elements(mesh: &Mesh, element: &str, document: &mut MdpaDocument) -> bool {
+/// Takes elements that do not lock where a material of the mesh hardly changes its volume, or flows; gives the reason, where it did.
+/// Elements of second order stay, and rings and plane stress have none.
+fn take_mixed_elements(mesh: &Mesh, element: &str, document: &mut MdpaDocument) -> Option<String> {
     let is_near_half = |material: &Material| material.young.is_some() && material.poisson > LOCKS;
-    if matches!(mesh.plane, Some(Plane::Stress | Plane::Axial)) || !mesh.materials.iter().any(is_near_half) {
-        return false;
-    }
-    let mixed = if element == LARGE { MIXED_LARGE } else { MIXED };
+    let flows = |material: &Material| !material.yield_curve.is_empty();
+    let (other, reason) = match element {
+        _ if matches!(mesh.plane, Some(Plane::Stress | Plane::Axial)) => return None,
+        PLAIN if mesh.materials.iter().any(is_near_half) => (MIXED, format!("at Poisson's ratios above {LOCKS}")),
+        LARGE if mesh.materials.iter().any(is_near_half) => (MIXED_LARGE, format!("at Poisson's ratios above {LOCKS}")),
+        PLAIN if mesh.materials.iter().any(flows) => (MEAN_DILATATION, "in plastic flow".to_owned()),
+        _ => return None,
+    };
     let mut taken = false;
     for block in &mut document.elements {
-        let mixed = block.name.strip_prefix(element).map(|suffix| format!("{mixed}{suffix}"));
-        if let Some(mixed) = mixed.filter(|name| find_kind(EntityRole::Element, name).is_some()) {
-            (block.name, taken) = (mixed, true);
+        let name = block.name.strip_prefix(element).map(|suffix| format!("{other}{suffix}"));
+        if let Some(name) = name.filter(|name| find_kind(EntityRole::Element, name).is_some()) {
+            (block.name, taken) = (name, true);
         }
     }
-    taken
+    taken.then_some(reason)
 }

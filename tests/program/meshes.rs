@@ -3,7 +3,7 @@
 use crate::support;
 use std::path::{Path, PathBuf};
 
-use crate::support::{root, said, zelus};
+use crate::support::{read_json, root, said, zelus};
 use serde_json::json;
 use zelus::{RunOptions, Silent, Simulation};
 
@@ -133,22 +133,32 @@ fn contact_of_bodies_of_revolution_counts_the_way_round() {
     assert!((pressure / 10.0 - 1.0).abs() < 0.03, "{pressure}");
 }
 
-/// A starter deck of a material that hardly changes its volume has elements that do not lock.
+/// A starter deck of a material that hardly changes its volume, or flows, has elements that do not lock.
 #[test]
 fn starter_decks_do_not_lock() {
     const MIXED: &str = "SmallDisplacementMixedVolumetricStrainElement2D4N";
-    for (ratio, mixed) in [(0.4999, true), (0.3, false)] {
+    const MEAN_DILATATION: &str = "SmallDisplacementBbarElement2D4N";
+    const PLAIN: &str = "SmallDisplacementElement2D4N";
+    for (ratio, plastic, element) in
+        [(0.4999, "", MIXED), (0.3, "", PLAIN), (0.3, "*PLASTIC\n8,0\n20,0.1\n", MEAN_DILATATION)]
+    {
         let scratch = tempfile::tempdir().unwrap();
         let block = format!(
             "*NODE\n1,0,0\n2,1,0\n3,1,1\n4,0,1\n*ELEMENT,TYPE=CPE4,ELSET=BLOCK\n1,1,2,3,4\n*NSET,NSET=BOTTOM\n1,2\n\
-             *MATERIAL,NAME=M\n*ELASTIC\n1000,{ratio}\n*SOLID SECTION,ELSET=BLOCK,MATERIAL=M\n*SURFACE,NAME=TOP\nBLOCK,S3\n\
+             *MATERIAL,NAME=M\n*ELASTIC\n1000,{ratio}\n{plastic}*SOLID SECTION,ELSET=BLOCK,MATERIAL=M\n*SURFACE,NAME=TOP\nBLOCK,S3\n\
              *STEP\n*STATIC\n*BOUNDARY\nBOTTOM,1,2\n*DSLOAD\nTOP,P,10\n*END STEP\n"
         );
         std::fs::write(scratch.path().join("block.inp"), block).unwrap();
         let output = zelus(scratch.path(), &["new", "--from", "block.inp", "-o", "deck"]);
         assert!(output.status.success(), "{}", said(&output));
         let mesh = std::fs::read_to_string(scratch.path().join("deck/block.mdpa")).unwrap();
-        assert_eq!((mesh.contains(MIXED), said(&output).contains("locks")), (mixed, mixed), "{}", said(&output));
+        let block = format!("Begin Elements {element}");
+        assert_eq!(
+            (mesh.contains(&block), said(&output).contains("locks")),
+            (true, element != PLAIN),
+            "{}",
+            said(&output)
+        );
         let output = zelus(scratch.path(), &["run", "deck/ProjectParameters.json"]);
         assert!(output.status.success() && !said(&output).contains("[locking]"), "{}", said(&output));
     }
@@ -540,6 +550,85 @@ fn options_reach_pairs_that_are_found() {
     assert!(materials.contains("110000.0") && materials.contains("210000.0"), "{materials}");
     let output = zelus(&scratch.path().join("deck"), &["check", "ProjectParameters.json"]);
     assert!(output.status.success(), "{}", said(&output));
+}
+
+/// The lug of the examples at 1000 N by every formulation: the same motion, and but for Nitsche's method, whose pressure is that of the
+/// elements, the same pressure.
+#[test]
+fn formulations_by_name_run() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path();
+    std::fs::copy(root().join("examples/lug/lug.msh"), folder.join("lug.msh")).unwrap();
+    let options = ["new", "--from", "lug.msh", "--fix", "Bottom", "--fix", "Symmetry=x", "--load", "PinCore=1000N,y"];
+    let new = |name: &str, more: &[&str]| {
+        let own = ["--formulation", name, "-o", name];
+        zelus(folder, &[&options[..], &own, more].concat())
+    };
+    let mut wanted: Option<[f64; 2]> = None;
+    for name in ["alm", "penalty", "uzawa", "perturbed_lagrangian", "nitsche", "mpc"] {
+        let output = new(name, &[]);
+        assert!(output.status.success(), "{}", said(&output));
+        let deck = format!("{name}/ProjectParameters.json");
+        let output = zelus(folder, &["run", &deck, "-q", "--report", "run.json"]);
+        assert!(output.status.success(), "{name}: {}", said(&output));
+        let report = read_json(&folder.join("run.json")).unwrap();
+        let found = ["DISPLACEMENT", "CONTACT_PRESSURE"].map(|key| report["largest"][key].as_f64().unwrap());
+        let [motion, pressure] = *wanted.get_or_insert(found);
+        // 0.3 % of pressure for the penetration of penalties, 2 % of motion for the consistent traction of Nitsche's method
+        assert!((found[0] / motion - 1.0).abs() < 0.02, "{name}: {found:?}");
+        assert!(name == "nitsche" || (found[1] / pressure - 1.0).abs() < 3e-3, "{name}: {found:?} {wanted:?}");
+    }
+    for (name, more, fact) in [
+        ("uzawa", &["--friction", "0.2"][..], "it has no friction"),
+        ("penaly", &[], "did you mean \"penalty\""),
+        ("alm", &["--slave", "Hoole"], "surfaces: Hole, PinFace"),
+    ] {
+        std::fs::remove_dir_all(folder.join(name)).ok();
+        let output = new(name, more);
+        assert!(output.status.code() == Some(2) && said(&output).contains(fact), "{name}: {}", said(&output));
+    }
+}
+
+/// A short row of squares on a long one: the order of the sides is that of the materials, else of the meshes, else of the areas, so that
+/// it is the same for coarse and fine meshes alike.
+#[test]
+fn the_softer_finer_or_smaller_side_is_the_slave() {
+    let rows = |lower: u32, upper: u32| {
+        let mut text = String::from("*NODE\n");
+        let (mut cells, mut first) = (String::new(), 1);
+        for (name, length, count, y) in [("LOWER", 4.0, lower, -1.0), ("UPPER", 2.0, upper, 0.0)] {
+            cells += &format!("*ELEMENT, TYPE=CPE4, ELSET={name}\n");
+            for i in 0..=count {
+                for j in 0..2_u32 {
+                    let (x, y) = (length * f64::from(i) / f64::from(count), y + f64::from(j));
+                    text += &format!("{}, {x:?}, {y:?}\n", first + 2 * i + j);
+                }
+            }
+            for i in 0..count {
+                let at = first + 2 * i;
+                cells += &format!("{at}, {at}, {}, {}, {}\n", at + 2, at + 3, at + 1);
+            }
+            first += 2 * count + 2;
+        }
+        format!("{text}{cells}*SURFACE, NAME=LOWFACE\nLOWER, S3\n*SURFACE, NAME=UPFACE\nUPPER, S1\n")
+    };
+    for (counts, options, slave, reason) in [
+        ((4, 2), &[][..], "UPFACE", "smaller, of like meshes"),
+        ((16, 8), &[], "UPFACE", "smaller, of like meshes"),
+        ((5, 2), &[], "UPFACE", "smaller, of like meshes"),
+        ((16, 2), &[], "LOWFACE", "finer"),
+        ((4, 8), &["--material", "LOWER=aluminium"], "LOWFACE", "softer"),
+        ((16, 2), &["--material", "UPPER=aluminium"], "UPFACE", "softer"),
+        ((4, 2), &["--slave", "LOWFACE"], "LOWFACE", "found by proximity"),
+    ] {
+        let scratch = tempfile::tempdir().unwrap();
+        std::fs::write(scratch.path().join("rows.inp"), rows(counts.0, counts.1)).unwrap();
+        let output = zelus(scratch.path(), &[&["new", "--from", "rows.inp", "-o", "deck"], options].concat());
+        let line = said(&output).lines().find(|line| line.starts_with("contact: ")).unwrap_or_default().to_owned();
+        assert!(line.contains(&format!("slave {slave}, ")) && line.contains(reason), "{counts:?} {options:?}: {line}");
+        let deck = std::fs::read_to_string(scratch.path().join("deck/ProjectParameters.json")).unwrap();
+        assert!(deck.contains(&format!("\"assume_master_slave\": {{\"0\": [\"{slave}\"]}}")), "{deck}");
+    }
 }
 
 /// A quarter of a ring of one element, under pressure inside, as a cyclic sector: the radial displacement is the same on both sides, and

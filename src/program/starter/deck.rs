@@ -3,6 +3,7 @@
 use zelus_meshes::conditions::Support;
 use zelus_meshes::mesh::{Mesh, Pair};
 
+use super::formulations::Formulation;
 use super::histories::Histories;
 use super::point_loads::ForceFile;
 use super::{processes, stepping, thickness};
@@ -12,6 +13,7 @@ pub(super) fn text(
     mesh: &Mesh,
     stem: &str,
     space: usize,
+    formulation: Formulation,
     supports: &[Support],
     forces: Option<&ForceFile>,
     texts: &mut Histories,
@@ -26,12 +28,19 @@ pub(super) fn text(
         (false, false) => "FrictionlessComponents",
     };
     let adjusted = if contact.iter().any(|pair| pair.adjusted) { ", \"adjust_initial\": true" } else { "" };
-    let settings = match (contact.is_empty(), tied.is_empty()) {
-        (true, true) => String::new(),
-        (true, false) => "\n    \"contact_settings\": {\"mortar_type\": \"ComponentsMeshTying\"},".to_owned(),
-        (false, _) => format!("\n    \"contact_settings\": {{\"mortar_type\": \"ALMContact{kind}\"{adjusted}}},"),
+    let settings = match (contact.is_empty(), tied.is_empty(), formulation.mortar) {
+        (true, true, _) => String::new(),
+        (true, false, _) => "\n    \"contact_settings\": {\"mortar_type\": \"ComponentsMeshTying\"},".to_owned(),
+        (false, _, Some(mortar)) => {
+            format!("\n    \"contact_settings\": {{\"mortar_type\": \"{mortar}{kind}\"{adjusted}}},")
+        }
+        (false, _, None) => format!("\n    \"mpc_contact_settings\": {{\"contact_type\": \"{kind}\"}},"),
     };
-    let criterion = if contact.is_empty() { "residual_criterion" } else { "contact_residual_criterion" };
+    let criterion = if contact.is_empty() || formulation.mortar.is_none() {
+        "residual_criterion"
+    } else {
+        "contact_residual_criterion"
+    };
     let temperature = if mesh.temperatures.is_empty() {
         ""
     } else {
@@ -55,7 +64,10 @@ pub(super) fn text(
     add("axes_process_list", mesh.material_axes.iter().map(processes::material_axes).collect());
     add("temperatures_process_list", mesh.temperatures.iter().map(|own| processes::temperature(own, texts)).collect());
     if !contact.is_empty() {
-        add("contact_process_list", vec![processes::contact(&contact, kind, friction, mesh.plane)]);
+        add(
+            "contact_process_list",
+            vec![processes::contact(&contact, formulation.process, kind, friction, mesh.plane)],
+        );
     }
     if !tied.is_empty() {
         add("tying_process_list", vec![processes::tie(&tied)]);

@@ -4,6 +4,8 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_meshes::conditions::Axes;
 use zelus_meshes::mesh::{Material, Mesh, Plane};
 
+/// Young's modulus of steel in N and mm, where a mesh has no materials.
+pub(super) const STEEL: f64 = 210_000.0;
 /// Plastic strain and slope factor beyond a yield curve: its last stress stays.
 const BEYOND: f64 = 10.0;
 
@@ -21,7 +23,7 @@ pub(super) fn text(mesh: &Mesh, space: usize, whole: Option<&Material>, said: &m
             }
             (None, None) => "steel, in N and mm: state your own".to_owned(),
         };
-        let steel = Material { young: Some(210_000.0), poisson: 0.3, ..Material::default() };
+        let steel = Material { young: Some(STEEL), poisson: 0.3, ..Material::default() };
         let material = known.or(whole).unwrap_or(&steel);
         let about = mesh.material_axes.iter().find(|axes| format!("Structure.{}", axes.group) == own.part);
         let is_around = about.is_some_and(|axes| matches!(axes.axes, Axes::Cylindrical { .. }));

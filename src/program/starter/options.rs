@@ -6,6 +6,7 @@ use zelus_meshes::conditions::{Load, LoadKind, Support};
 use zelus_meshes::history::History;
 use zelus_meshes::mesh::{Material, Mesh, Section};
 
+use super::formulations::Formulation;
 use super::{known_materials, stepping};
 
 /// Supports, loads, friction and materials of the command line.
@@ -21,12 +22,29 @@ pub(super) struct Options {
     /// Coefficient of friction of all contact pairs.
     #[arg(long, value_name = "NUMBER")]
     friction: Option<f64>,
+    /// Formulation of the contact: alm (augmented Lagrangian, the default), penalty, uzawa, perturbed_lagrangian, nitsche or mpc.
+    #[arg(long, value_name = "NAME")]
+    formulation: Option<String>,
+    /// Surface that is the slave of its contact pair. May be repeated. By default the softer side, of like materials the finer, of like
+    /// meshes that of the smaller area.
+    #[arg(long, value_name = "PART")]
+    pub(super) slave: Vec<String>,
     /// Material by name: steel, stainless_steel, aluminium, titanium, concrete; for one part Body=aluminium. In N and mm. May be repeated.
     #[arg(long, value_name = "[PART=]NAME")]
     material: Vec<String>,
 }
 
 impl Options {
+    /// The formulation of the contact.
+    ///
+    /// # Errors
+    /// A name that is not known, or a formulation that does not go with friction or ties.
+    pub(super) fn formulation(&self, mesh: &Mesh) -> Result<Formulation> {
+        let Some(name) = &self.formulation else { return Ok(Formulation::default()) };
+        let friction = mesh.pairs.iter().any(|pair| !pair.tied && pair.friction > 0.0);
+        Formulation::find(name, friction, mesh.pairs.iter().any(|pair| pair.tied))
+    }
+
     /// Puts supports, loads, friction and materials of parts into the mesh; gives the material of all other parts.
     ///
     /// # Errors

@@ -289,13 +289,13 @@ fn slaves(pair: &Pair) -> String {
     if pair.slave == pair.master { "[]".to_owned() } else { format!("[\"{}\"]", pair.slave) }
 }
 
-pub(super) fn contact(pairs: &[&Pair], kind: &str, friction: bool, plane: Option<Plane>) -> String {
+pub(super) fn contact(pairs: &[&Pair], module: &str, kind: &str, friction: bool, plane: Option<Plane>) -> String {
     let mut parameters = vec![
         word("model_part_name", "Structure"),
         word("contact_type", kind),
         format!("\"contact_model_part\": {}", by_pair(pairs, surfaces)),
         format!(
-            "// slaves: the finer side, of like meshes the softer\n          \"assume_master_slave\": {}",
+            "// slaves: the softer side, of like materials the finer\n          \"assume_master_slave\": {}",
             by_pair(pairs, slaves)
         ),
     ];
@@ -306,7 +306,7 @@ pub(super) fn contact(pairs: &[&Pair], kind: &str, friction: bool, plane: Option
     if plane == Some(Plane::Axial) {
         parameters.push("\"alternative_formulations\": {\"axisymmetric\": true}".to_owned());
     }
-    process("alm_contact_process", CONTACT, &parameters)
+    process(module, CONTACT, &parameters)
 }
 
 pub(super) fn tie(pairs: &[&Pair]) -> String {
