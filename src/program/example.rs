@@ -74,7 +74,7 @@ pub(super) fn example(kind: &str, entry: &Entry) -> Result<Option<String>> {
 }
 
 /// Constants of laws that are not isotropic elasticity, with usual values (MPa, hours): an example has those that its law takes.
-const CONSTANTS: [(&str, f64); 12] = [
+const CONSTANTS: [(&str, f64); 19] = [
     ("YOUNG_MODULUS_X", 140_000.0),
     ("YOUNG_MODULUS_Y", 10_000.0),
     ("YOUNG_MODULUS_Z", 10_000.0),
@@ -87,17 +87,39 @@ const CONSTANTS: [(&str, f64); 12] = [
     ("NORTON_COEFFICIENT", 1e-16),
     ("NORTON_EXPONENT", 5.0),
     ("YIELD_STRESS", 250.0),
+    ("SHEAR_MODULUS", 0.7),
+    ("C10", 0.3),
+    ("C01", 0.05),
+    ("C30", 0.001),
+    ("GENT_LIMIT", 60.0),
+    ("LOCKING_STRETCH", 5.0),
+    ("BULK_MODULUS", 700.0),
 ];
 
 /// Constants of a material with the law of that name.
 fn constants_of(law: &str) -> Value {
     let takes = |name: &str| find::<LawEntry>(law).is_some_and(|law| law.takes_constant(name));
     let mut constants = json!({});
-    if !takes("YOUNG_MODULUS_X") {
+    let is_rubber = takes("BULK_MODULUS") || takes("BLATZ_KO_SHARE");
+    if is_rubber && !takes("BULK_MODULUS") {
+        constants = json!({ "POISSON_RATIO": 0.25 });
+    }
+    if !takes("YOUNG_MODULUS_X") && !is_rubber {
         constants = json!({ "YOUNG_MODULUS": 210_000.0, "POISSON_RATIO": 0.3 });
     }
     for (name, value) in CONSTANTS.into_iter().filter(|(name, _)| takes(name)) {
         constants[name] = json!(value);
+    }
+    if takes("C30") {
+        constants["C20"] = json!(-0.01);
+    }
+    if takes("OGDEN_MODULI") {
+        constants["OGDEN_MODULI"] = json!([0.6, 0.001, -0.01]);
+        constants["OGDEN_EXPONENTS"] = json!([1.3, 5.0, -2.0]);
+    }
+    if takes("PRONY_SHARES") && !is_rubber {
+        constants["PRONY_SHARES"] = json!([0.2, 0.1]);
+        constants["PRONY_TIMES"] = json!([0.1, 10.0]);
     }
     if takes("KINEMATIC_PLASTICITY_PARAMETERS") {
         constants["KINEMATIC_HARDENING_TYPE"] = json!(1);

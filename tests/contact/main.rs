@@ -28,6 +28,7 @@ mod renumber;
 mod renumbering;
 #[path = "../support/scene.rs"]
 mod scene;
+mod seal;
 mod second_order;
 mod sizes;
 mod slivers;

@@ -102,7 +102,7 @@ fn known_names_that_are_not_there_say_what_to_use_instead() {
             "SmallDisplacementMixedVolumetricStrainOssElement2D3N",
             "SmallDisplacementMixedVolumetricStrainElement",
         ),
-        ("element", "TotalLagrangianQ1P0MixedElement2D4N", "TotalLagrangianMixedVolumetricStrainElement2D3N"),
+        ("element", "TotalLagrangianQ1P0MixedElement2D3N", "TotalLagrangianMixedVolumetricStrainElement2D3N"),
         ("condition", "DisplacementControlCondition3D1N", "arc_length"),
         (
             "constitutive_law",

@@ -48,7 +48,7 @@ pub fn cell(shape: Shape, space: usize, amount: f64, random: &mut Random) -> Vec
 
 /// Properties of every specimen. Bodies have the temperature at which laws that expand are without strain. Yielding begins far below
 /// the strains of the tests: differences taken across its beginning are no derivatives.
-const USUAL: [(&str, f64); 21] = [
+const USUAL: [(&str, f64); 29] = [
     ("REFERENCE_TEMPERATURE", 0.0),
     ("CONDUCTIVITY", 0.7),
     ("SPECIFIC_HEAT", 2.0),
@@ -61,6 +61,14 @@ const USUAL: [(&str, f64); 21] = [
     ("HARDENING_MODULUS_1D", 10.0),
     ("NORTON_COEFFICIENT", 0.01),
     ("NORTON_EXPONENT", 3.0),
+    ("BULK_MODULUS", 80.0),
+    ("SHEAR_MODULUS", 30.0),
+    ("C10", 12.0),
+    ("C01", 3.0),
+    ("C20", -1.0),
+    ("C30", 0.4),
+    ("GENT_LIMIT", 10.0),
+    ("LOCKING_STRETCH", 2.5),
     ("YOUNG_MODULUS_X", 120.0),
     ("YOUNG_MODULUS_Y", 80.0),
     ("YOUNG_MODULUS_Z", 60.0),
@@ -143,6 +151,17 @@ impl Specimen {
         // Armstrong–Frederick's, whose tangent is not symmetric
         let hardening = PropertyValue::Vector(vec![20.0, 30.0]);
         properties.values.insert("KINEMATIC_PLASTICITY_PARAMETERS".to_owned(), hardening);
+        let lists: [(&str, &[f64]); 4] = [
+            ("OGDEN_MODULI", &[40.0, 0.5, -3.0]),
+            ("OGDEN_EXPONENTS", &[1.3, 5.0, -2.0]),
+            ("PRONY_SHARES", &[0.3, 0.2]),
+            ("PRONY_TIMES", &[0.05, 2.0]),
+        ];
+        // laws of rubber relax where they have a series: here they are elastic
+        let relaxes = law.is_some_and(|law| law.contains("Visco"));
+        for (name, list) in lists.into_iter().filter(|(name, _)| relaxes || !name.starts_with("PRONY")) {
+            properties.values.insert(name.to_owned(), PropertyValue::Vector(list.to_vec()));
+        }
         part.properties.insert(1, properties);
         let table = if entry.role == EntityRole::Element { &mut part.elements } else { &mut part.conditions };
         table.push(1, entry, 1, nodes);

@@ -124,8 +124,31 @@ register_variable! {
     kind INTEGRATION_WEIGHT: Scalar = "Part of the initial volume that a Gauss point stands for.";
 }
 
-register_material_range! { "(0, inf)": ["CROSS_AREA", "THICKNESS"] }
-register_material_range! { "[0, inf)": ["DENSITY", "RAYLEIGH_ALPHA", "RAYLEIGH_BETA", "FRACTURE_ENERGY"] }
+register_variable! {
+    kind BULK_MODULUS: Scalar = "Bulk modulus κ of hyperelastic materials, 2/D₁ (force per area).";
+    kind SHEAR_MODULUS: Scalar = "Modulus μ of hyperelastic materials (force per area).";
+    kind C10: Scalar = "Constant C₁₀ of Mooney–Rivlin and Yeoh materials (force per area).";
+    kind C01: Scalar = "Constant C₀₁ of Mooney–Rivlin materials (force per area).";
+    kind C20: Scalar = "Constant C₂₀ of Mooney–Rivlin and Yeoh materials (force per area).";
+    kind C11: Scalar = "Constant C₁₁ of Mooney–Rivlin materials (force per area).";
+    kind C02: Scalar = "Constant C₀₂ of Mooney–Rivlin materials (force per area).";
+    kind C30: Scalar = "Constant C₃₀ of Yeoh materials (force per area).";
+    kind OGDEN_MODULI: Vector = "Moduli μ_p of the terms μ_p/α_p (λ₁^α_p + λ₂^α_p + λ₃^α_p − 3) of Ogden materials (force per area).";
+    kind OGDEN_EXPONENTS: Vector = "Exponents α_p of the terms of Ogden materials, not 0.";
+    kind GENT_LIMIT: Scalar = "Limit J_m of I₁ − 3 in Gent materials.";
+    kind LOCKING_STRETCH: Scalar = "Stretch λ_L at which the chains of Arruda–Boyce materials lock.";
+    kind BLATZ_KO_SHARE: Scalar = "Share f of the solid in Blatz–Ko materials, from 0 (foam; the default) to 1.";
+    kind PRONY_SHARES: Vector = "Shares g_i of the instantaneous shear modulus that relax; their sum is below 1.";
+    kind PRONY_TIMES: Vector = "Times τ_i in which the shares of PRONY_SHARES relax (time).";
+    kind MULLINS_R: Scalar = "Constant r of Mullins' softening, above 1: at most the share 1/r of the stress is lost.";
+    kind MULLINS_M: Scalar = "Constant m of Mullins' softening (energy per volume).";
+    kind MULLINS_BETA: Scalar = "Constant β of Mullins' softening, from 0 (the default).";
+}
+
+register_material_range! { "(0, inf)": ["CROSS_AREA", "THICKNESS", "BULK_MODULUS", "SHEAR_MODULUS", "GENT_LIMIT", "LOCKING_STRETCH"] }
+register_material_range! { "(1, inf)": ["MULLINS_R"] }
+register_material_range! { "[0, 1]": ["BLATZ_KO_SHARE"] }
+register_material_range! { "[0, inf)": ["DENSITY", "RAYLEIGH_ALPHA", "RAYLEIGH_BETA", "FRACTURE_ENERGY", "MULLINS_M", "MULLINS_BETA"] }
 
 register_usual_results! {
     values: [],

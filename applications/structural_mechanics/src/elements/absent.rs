@@ -26,7 +26,7 @@ register_absent! { ElementEntry ["SmallDisplacementMixedStrain", "SmallDisplacem
 "against volumetric locking use SmallDisplacementMixedVolumetricStrainElement, or SmallDisplacementBbarElement2D4N or 3D8N" }
 
 register_absent! { ElementEntry ["TotalLagrangianQ1P0"] =>
-"in the plane use TotalLagrangianMixedVolumetricStrainElement2D3N: no planar law leaves the volume to the element" }
+"triangles of first order with one pressure lock: use TotalLagrangianMixedVolumetricStrainElement2D3N, or 2D6N of this element" }
 
 register_absent! { LawEntry ["SmallStrainKinematicPlasticity"] =>
 "of kinematic hardening VonMisesVonMises is there, in space, plane strain and with axial symmetry" }
@@ -51,6 +51,9 @@ register_absent! { LawEntry ["SmallStrainDplusDminus", "DamageDPlusDMinus", "Sma
 
 register_absent! { LawEntry ["SerialParallelRuleOfMixtures", "TractionSeparationLaw"] =>
 "of mixtures those whose layers strain alike are there: ParallelRuleOfMixturesLaw3D or 2D with sub_properties" }
+
+register_absent! { LawEntry ["HyperElasticIsotropicOgden1D", "HyperElasticIsotropicHenky1D"] =>
+"of hyperelastic laws those of solids are there, HyperElasticOgden3DLaw; bars have TrussConstitutiveLaw" }
 
 register_absent! { SchemeEntry ["relaxation"] =>
 "dynamic relaxation is not there: use \"solver_type\": \"Static\" for the state at rest, or \"pseudo_static\" with damping for the way to it" }

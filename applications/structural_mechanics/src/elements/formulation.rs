@@ -16,6 +16,9 @@ pub trait Formulation: Send + Sync + 'static {
     /// Whether the law leaves the volume to the element, which holds one pressure; finite strain only.
     const CONSTANT_PRESSURE: bool = false;
 
+    /// Whether that pressure is linear in the coordinates instead of constant.
+    const LINEAR_PRESSURE: bool = false;
+
     /// The stress that works on the strain: Cauchy on the present, Piola–Kirchhoff on the initial configuration.
     const MEASURE: StressMeasure = if Self::PRESENT { StressMeasure::Cauchy } else { StressMeasure::Pk2 };
 }

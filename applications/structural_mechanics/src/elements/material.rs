@@ -5,7 +5,7 @@ use zelus_core::entities::{BlockRequest, StepView};
 use zelus_core::geometry::{MAX_ORDER, Shape, ShapeTable};
 use zelus_core::model::Properties;
 
-use crate::laws::{ConstitutiveLaw, LawFactory, MakesLaw, law_of};
+use crate::laws::{ConstitutiveLaw, LawFactory, MakesLaw, StrainState, law_of};
 use crate::variables::VOLUME_ACCELERATION;
 
 /// Reason why a law with thermal expansion has no solution.
@@ -18,6 +18,8 @@ pub(super) struct Material<const S: usize> {
     id: usize,
     /// The law.
     pub(super) law: Box<dyn ConstitutiveLaw<S>>,
+    /// Shear modulus without strain, of materials whose law leaves the volume to the element; else 0.
+    pub(super) shear: f64,
     /// Mass per initial volume, 0 when not given.
     pub(super) density: f64,
     /// Thickness of planar elements; 1 for all others.
@@ -30,6 +32,15 @@ pub(super) struct Material<const S: usize> {
     pub(super) lumped: bool,
     /// Gauss rule of forces and stiffness.
     pub(super) rule: &'static ShapeTable,
+}
+
+/// Shear modulus without strain.
+fn shear_modulus<const S: usize>(law: &dyn ConstitutiveLaw<S>) -> f64 {
+    let history = vec![0.0; law.history()];
+    let mut d = [[0.0; S]; S];
+    law.pk2(&StrainState { small: false, history: &history, ..StrainState::REST }, Some(&mut d));
+    let at = if S == 6 { 3 } else { S - 1 };
+    d[at][at]
 }
 
 impl<const S: usize> Material<S> {
@@ -55,7 +66,10 @@ impl<const S: usize> Material<S> {
                 return Err(problem.remedy("give a positive number").into());
             }
         }
-        let law = law_of::<S>(properties, plane)?;
+        let mut law = law_of::<S>(properties, plane)?;
+        if pressure && law.bulk_of_element().is_none() {
+            law.leave_volume();
+        }
         if law.bulk_of_element().is_some() != pressure {
             let both = if pressure {
                 "resists changes of volume, and so do"
@@ -64,12 +78,13 @@ impl<const S: usize> Material<S> {
             };
             let fact = format!("the law of properties {} {both} these elements", properties.id);
             let problem = Diagnostic::error("law-does-not-fit", fact).at(properties.place.clone());
-            let remedy = "TotalLagrangianQ1P0MixedElement3D8N goes with \
-                          HyperElasticIsotropicQuasiIncompressibleIshochoricNeoHookean3D, also Thermal, and neither with others";
+            let remedy = "TotalLagrangianQ1P0MixedElement goes with HyperElasticMooneyRivlin…, …Yeoh…, …Ogden…, …ArrudaBoyce…, \
+                          …Gent… and HyperElasticIsotropicQuasiIncompressibleIshochoricNeoHookean3D, the last with no other element";
             return Err(problem.remedy(remedy).into());
         }
         Ok(Self {
             id: properties.id,
+            shear: if pressure { shear_modulus(law.as_ref()) } else { 0.0 },
             law,
             density,
             thickness,

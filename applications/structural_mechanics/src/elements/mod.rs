@@ -1,4 +1,4 @@
-//! Elements: solids (one kernel, four formulations), trusses, springs and masses.
+//! Elements: solids (one kernel, six formulations), trusses, springs and masses.
 //!
 //! [`Solid`] does the integration; a [`Formulation`] says on which configuration and with which strain. A formulation's
 //! file registers its elements for every shape. The framework makes blocks of the elements of a part and assembles them:
@@ -60,6 +60,7 @@ mod reference_tests;
 mod tests;
 mod total_lagrangian;
 mod total_lagrangian_q1p0;
+mod total_lagrangian_q2p1;
 mod truss;
 mod updated_lagrangian;
 
@@ -76,6 +77,7 @@ pub use solid::Solid;
 pub use spring_damper::SpringDamper;
 pub use total_lagrangian::TotalLagrangian;
 pub use total_lagrangian_q1p0::TotalLagrangianQ1P0;
+pub use total_lagrangian_q2p1::TotalLagrangianQ2P1;
 pub use truss::Truss;
 pub use updated_lagrangian::UpdatedLagrangian;
 

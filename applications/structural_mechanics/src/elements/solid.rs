@@ -5,6 +5,7 @@
 //! div u is replaced by its mean over the element, θ̄ = Σ (∫ ∂N_i dV / V) · u_i: ε̄ = ε + (θ̄ − θ)/3 1, in the plane with its component
 //! across. The element keeps the history of its law at each point.
 
+mod held_pressure;
 mod kinematics;
 mod traction;
 
@@ -17,7 +18,8 @@ use zelus_core::entities::{
 };
 use zelus_core::geometry::{Shape, ShapeTable};
 
-use self::kinematics::{ElementMotion, radius};
+use self::held_pressure::MODES;
+use self::kinematics::radius;
 use super::band::{self, BANDS_AS_KRATOS};
 use super::formulation::Formulation;
 use super::gradients::{displacements, nodal_vectors, physical_gradients};
@@ -41,27 +43,6 @@ pub struct Solid<F, const NODES: usize, const DIM: usize, const S: usize> {
 impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid<F, NODES, DIM, S> {
     fn material(&self, entity: &EntityView<'_, NODES>) -> &Material<S> {
         Material::find(&self.materials, entity.properties.id)
-    }
-
-    /// Volume that is free of pressure, and the pressure of an element that holds one, p = −κ (J̄ − 1) with the volume over that one;
-    /// no pressure in others.
-    fn pressure(
-        material: &Material<S>,
-        entity: &EntityView<'_, NODES>,
-        motion: &ElementMotion<NODES>,
-        state: &[f64],
-    ) -> Result<[f64; 2], String> {
-        let (mut volume, mut change) = (0.0, 0.0);
-        if let Some(bulk) = material.law.bulk_of_element() {
-            for g in 0..material.rule.len() {
-                let point = Self::point(material, g, entity, motion, &[[0.0; DIM]; NODES], state)?;
-                let free = material.law.free_volume(point.state.temperature);
-                volume += point.weight * free;
-                change += point.weight * (point.state.det_f - free);
-            }
-            change *= -bulk / volume;
-        }
-        Ok([volume, change])
     }
 
     fn body_forces<const SIZE: usize>(
@@ -176,12 +157,14 @@ where
         let mut upper = [[0.0; SIZE]; SIZE];
         let mut d = [[0.0; S]; S];
         let mean = Self::mean_gradients(material, entity);
-        let [volume, pressure] = Self::pressure(material, entity, &motion, state)?;
-        // ∫ J Bᵀ C⁻¹ dV
-        let mut of_volume = [0.0; SIZE];
+        let pressure = Self::pressure(material, entity, &motion, state)?;
+        let before = if lhs.is_empty() { None } else { Self::pressure_before(material, entity, view, &motion, state) };
+        // ∫ φ_k J Bᵀ C⁻¹ dV
+        let mut of_volume = [[0.0; SIZE]; MODES];
         for g in 0..material.rule.len() {
             let mut point = Self::point(material, g, entity, &motion, &mean, state)?;
-            point.state.pressure = pressure;
+            let modes = Self::modes(&material.rule.n()[g], entity);
+            point.state.pressure = pressure.at(&modes);
             point.state.small &= !view.decides_normals();
             if material.density > 0.0 {
                 self.body_forces(material, &material.rule.n()[g], point.weight, &acceleration, rhs);
@@ -189,11 +172,18 @@ where
             if request == Request::External {
                 continue;
             }
-            let stress =
+            let mut stress =
                 material.law.stress(&point.state, F::MEASURE, if lhs.is_empty() { None } else { Some(&mut d) });
             Self::subtract_internal(&point, &stress, rhs);
             if lhs.is_empty() {
                 continue;
+            }
+            if let Some(before) = &before {
+                let (own, start) = (point.state.pressure, before.at(&modes));
+                if (own - start).abs() > material.shear {
+                    point.state.pressure = own.clamp(start - material.shear, start + material.shear);
+                    stress = material.law.stress(&point.state, F::MEASURE, Some(&mut d));
+                }
             }
             let b = Self::b_matrix::<SIZE>(&point);
             add_stiffness(point.weight, &d, &b, whole, &mut upper);
@@ -201,8 +191,10 @@ where
                 let f = inverse(&point.state.f);
                 let inverse_c = stress_vector::<S>(&(f * f.transpose()));
                 for (row, k) in b.iter().zip(inverse_c) {
-                    let factor = point.weight * point.state.det_f * k;
-                    of_volume.iter_mut().zip(row).for_each(|(sum, b)| *sum += factor * b);
+                    for (sums, mode) in of_volume.iter_mut().zip(modes).filter(|(_, mode)| *mode != 0.0) {
+                        let factor = mode * point.weight * point.state.det_f * k;
+                        sums.iter_mut().zip(row).for_each(|(sum, b)| *sum += factor * b);
+                    }
                 }
             }
             if F::FINITE {
@@ -210,8 +202,12 @@ where
             }
         }
         if let Some(bulk) = material.law.bulk_of_element().filter(|_| !lhs.is_empty()) {
-            for (row, x) in upper.iter_mut().zip(&of_volume) {
-                row.iter_mut().zip(&of_volume).for_each(|(out, y)| *out += bulk / volume * x * y);
+            let held = if F::LINEAR_PRESSURE { DIM + 1 } else { 1 };
+            for (k, l) in (0..held).flat_map(|k| (0..held).map(move |l| (k, l))) {
+                let factor = bulk * pressure.inverse[(k, l)];
+                for (row, x) in upper.iter_mut().zip(&of_volume[k]) {
+                    row.iter_mut().zip(&of_volume[l]).for_each(|(out, y)| *out += factor * x * y);
+                }
             }
         }
         if !lhs.is_empty() {
@@ -288,10 +284,11 @@ where
     ) -> Option<Gauss> {
         let material = self.material(entity);
         let (motion, mean) = (self.motion(entity, view), Self::mean_gradients(material, entity));
-        let [_, pressure] = Self::pressure(material, entity, &motion, state).ok()?;
+        let pressure = Self::pressure(material, entity, &motion, state).ok()?;
         results::gauss(material, F::MEASURE, S == 4 && !F::MEAN_DILATATION, variable, &|g| {
             let point = Self::point(material, g, entity, &motion, &mean, state).ok()?;
             let weight = Self::initial_weight(material.rule, g, entity);
+            let pressure = pressure.at(&Self::modes(&material.rule.n()[g], entity));
             Some((StrainState { pressure, ..point.state }, weight))
         })
     }

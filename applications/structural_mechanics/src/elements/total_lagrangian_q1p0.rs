@@ -18,6 +18,16 @@ impl Formulation for TotalLagrangianQ1P0 {
     const CONSTANT_PRESSURE: bool = true;
 }
 
+register_solids! { "TotalLagrangianQ1P0MixedElement", TotalLagrangianQ1P0, 3,
+"Planar solid for finite deformations that hardly change the volume: one pressure an element; plane strain",
+"∫ δE : S(E, p) dV, p = −κ (J̄ − 1)";
+2: "2D4N" 4, "2D6N" 6, "2D8N" 8, "2D9N" 9 }
+
+register_solids! { "AxisymTotalLagrangianQ1P0MixedElement", TotalLagrangianQ1P0, 4,
+"Solid of revolution for finite deformations that hardly change the volume: one pressure an element",
+"∫ δE : S(E, p) 2πR dA, p = −κ (J̄ − 1)";
+2: "2D4N" 4, "2D6N" 6, "2D8N" 8, "2D9N" 9 }
+
 register_solids! { "TotalLagrangianQ1P0MixedElement", TotalLagrangianQ1P0, 6,
 "Solid for finite deformations that hardly change the volume: one pressure an element, with an isochoric law",
 "∫ δE : S(E, p) dV, p = −κ (J̄ − 1)";

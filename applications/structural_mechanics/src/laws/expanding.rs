@@ -73,6 +73,10 @@ impl<const S: usize> ConstitutiveLaw<S> for Expanding<S> {
         self.law.bulk_of_element()
     }
 
+    fn leave_volume(&mut self) -> bool {
+        self.law.leave_volume()
+    }
+
     fn free_volume(&self, temperature: f64) -> f64 {
         (1.0 + self.expansion.strain(temperature)).powi(3)
     }

@@ -169,6 +169,11 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
         None
     }
 
+    /// Leaves the volume to the element from now on; whether the law can.
+    fn leave_volume(&mut self) -> bool {
+        self.bulk_of_element().is_some()
+    }
+
     /// Volume of an unconstrained specimen at a temperature, over its initial one.
     fn free_volume(&self, _temperature: f64) -> f64 {
         1.0

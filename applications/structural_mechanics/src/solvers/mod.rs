@@ -13,7 +13,7 @@ use zelus_core::parameters::{Defaults, Node, Settings, Value};
 use zelus_core::registry::{all, find};
 
 use crate::elements::BANDS_AS_KRATOS;
-use crate::laws::LawEntry;
+use crate::laws::{LawEntry, Rubber};
 
 /// Settings of static solvers with their defaults.
 pub const STATIC_DEFAULTS: &str = include_str!("../../../../configs/solvers/static.json");
@@ -35,7 +35,7 @@ pub const VARIABLES: [NodalVariable; 8] = [
 /// # Errors
 /// A name that is none.
 pub fn adopt(settings: &Settings, part: &mut ModelPart, report: &mut Report) -> Result<()> {
-    warn_of_unread_constants(part, report);
+    warn_of_constants(part, report);
     let named = settings.get_str("crack_bands")?;
     if !matches!(named, "of_volume" | "as_kratos") {
         let problem = settings.error("crack_bands", "invalid-value", format!("\"crack_bands\" is \"{named}\""));
@@ -45,13 +45,14 @@ pub fn adopt(settings: &Settings, part: &mut ModelPart, report: &mut Report) -> 
     Ok(())
 }
 
-/// Warns of constants of elements' properties that their law does not take, and others do.
-fn warn_of_unread_constants(part: &ModelPart, report: &mut Report) {
+/// Warns of constants of elements' properties that their law does not take, and others do, and of constants with which it is not stable.
+fn warn_of_constants(part: &ModelPart, report: &mut Report) {
     let of_elements: BTreeSet<usize> = part.elements.properties.iter().copied().collect();
     let mut of_layers: Vec<&Properties> = of_elements.iter().filter_map(|id| part.properties.get(id)).collect();
     while let Some(properties) = of_layers.pop() {
         of_layers.extend(&properties.parts);
         let Some(law) = properties.law.as_deref().and_then(find::<LawEntry>) else { continue };
+        Rubber::instability(properties).into_iter().for_each(|problem| report.push(problem));
         let tables = properties.tables.keys().map(|(_, of)| of);
         for name in properties.values.keys().chain(tables).filter(|name| !law.takes_constant(name)) {
             let Some(other) = all::<LawEntry>().into_iter().find(|other| other.takes_constant(name)) else { continue };

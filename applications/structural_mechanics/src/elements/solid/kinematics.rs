@@ -40,6 +40,7 @@ pub(super) struct Deformation<const S: usize> {
 }
 
 /// The motion of an element's nodes as a formulation reads it.
+#[derive(Clone)]
 pub(super) struct ElementMotion<const NODES: usize> {
     /// Displacements that strain the element (length).
     u: [[f64; 3]; NODES],
@@ -122,6 +123,19 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
             element,
             axes,
         }
+    }
+
+    /// The motion with the displacements at the start of the step.
+    pub(super) fn motion_before(
+        entity: &EntityView<'_, NODES>,
+        view: &StepView<'_>,
+        motion: &ElementMotion<NODES>,
+    ) -> ElementMotion<NODES> {
+        let u = match view.nodes.history.values(&DISPLACEMENT, 1) {
+            [] => [[0.0; 3]; NODES],
+            column => entity.vectors(column),
+        };
+        ElementMotion { u, ahead: None, ..motion.clone() }
     }
 
     /// Axes of the material of an element.
