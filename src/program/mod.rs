@@ -1,10 +1,12 @@
-//! The program: `zelus run`, `check`, `import`, `convert`, `new`, `partition`, `diff`, `report`, `list`, `describe`.
+//! The program: `zelus run`, `check`, `import`, `convert`, `new`, `partition`, `fit`, `diff`, `report`, `list`, `describe`.
 
 mod catalogue;
 mod colours;
 mod deformation;
 mod diff;
 mod example;
+mod fit;
+mod fit_picture;
 mod html;
 mod keys;
 mod kratos_names;
@@ -89,6 +91,8 @@ enum Command {
     New(starter::NewArguments),
     /// Partition the mesh of a deck for several ranks, and print the share, neighbours and communication of each.
     Partition(partition::PartitionArguments),
+    /// Fit the constants of a hyperelastic material to test data; writes the material and a picture of data and fit.
+    Fit(fit::FitArguments),
     /// Compare two result sets by node and field; exit code 0 if they are equal, 1 if not.
     Diff(diff::DiffArguments),
     /// Write a page about a run: the deformed model, largest stresses, reactions, contact forces, warnings and convergence. With --picture
@@ -184,6 +188,7 @@ fn execute(command: Command, ranks: &Ranks, ran: &mut bool) -> Result<ExitCode> 
         Command::Convert(arguments) => meshes::convert(&arguments).map(|()| ExitCode::SUCCESS),
         Command::New(arguments) => starter::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Partition(arguments) => partition::run(&arguments).map(|()| ExitCode::SUCCESS),
+        Command::Fit(arguments) => fit::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Diff(arguments) => diff::run(&arguments),
         Command::Report(arguments) => html::run(&arguments).map(|()| ExitCode::SUCCESS),
         Command::Schema { of } => {

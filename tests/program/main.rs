@@ -9,6 +9,7 @@ mod compatibility;
 mod diff;
 #[path = "../../fuzz/src/forge.rs"]
 mod forge;
+mod fit;
 mod forged;
 mod meshes;
 mod modelers;
