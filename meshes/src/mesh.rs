@@ -159,10 +159,25 @@ pub struct Material {
     pub elastic_table: Vec<[f64; 3]>,
     /// E₁, E₂, E₃, ν₁₂, ν₁₃, ν₂₃, G₁₂, G₁₃, G₂₃ of an orthotropic material.
     pub orthotropic: Option<[f64; 9]>,
+    /// Energy of a hyperelastic material.
+    pub rubber: Option<Rubber>,
     /// Yield stress over plastic strain, from strain 0; none: elastic.
     pub yield_curve: Vec<[f64; 2]>,
     /// Expansion by heat.
     pub expansion: Option<Expansion>,
+}
+
+/// Energy of a hyperelastic material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rubber {
+    /// Beginning of the name of its law.
+    pub law: &'static str,
+    /// Names and values of its constants.
+    pub constants: Vec<(&'static str, Vec<f64>)>,
+    /// Shear modulus without strain.
+    pub shear_modulus: f64,
+    /// Bulk modulus; `None` of a material that keeps its volume.
+    pub bulk_modulus: Option<f64>,
 }
 
 /// Expansion of a material by heat.

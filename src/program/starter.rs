@@ -38,6 +38,7 @@ const MIXED: &str = "SmallDisplacementMixedVolumetricStrainElement";
 const MIXED_LARGE: &str = "TotalLagrangianMixedVolumetricStrainElement";
 /// Elements for plastic flow, which changes no volume.
 const MEAN_DILATATION: &str = "SmallDisplacementBbarElement";
+const WITH_PRESSURE: &str = "TotalLagrangianQ1P0MixedElement";
 /// Poisson's ratio above which the usual ones of first order lock.
 const LOCKS: f64 = 0.49;
 
@@ -79,14 +80,17 @@ pub(super) fn run(arguments: &NewArguments) -> Result<()> {
         sides::make_slave(&mut mesh, name)?;
     }
     let formulation = arguments.options.formulation(&mesh)?;
-    let by_file = if mesh.is_large { LARGE } else { PLAIN };
+    let by_file = if mesh.is_large || is_rubber(&mesh) { LARGE } else { PLAIN };
     let element = arguments.element_name.clone().unwrap_or_else(|| by_file.to_owned());
     mesh.is_large = !element.starts_with("SmallDisplacement");
     let space = if is_planar(&mesh) && mesh.dimension() < 3 { 2 } else { 3 };
     let forces = point_loads::join(&mut mesh);
     let names = Names { element: element.clone(), condition: String::new() };
     let mut document = document(&mesh, &names, &Place::file(from), &mut said);
-    let other = arguments.element_name.is_none().then(|| take_mixed_elements(&mesh, &element, &mut document)).flatten();
+    let mut take = || {
+        take_elements_of_rubber(&mesh, &mut document).or_else(|| take_mixed_elements(&mesh, &element, &mut document))
+    };
+    let other = arguments.element_name.is_none().then(&mut take).flatten();
     point_loads::add(&mesh, &mut document, space, forces.as_ref());
     let stem = from.file_stem().map_or("mesh".to_owned(), |stem| stem.to_string_lossy().into_owned());
     let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from(&stem));
@@ -133,6 +137,27 @@ pub(super) fn run(arguments: &NewArguments) -> Result<()> {
 
 fn put(path: &Path, text: &str) -> Result<()> {
     replace_own_file(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// Whether all materials of the mesh are rubber.
+fn is_rubber(mesh: &Mesh) -> bool {
+    !mesh.materials.is_empty() && mesh.materials.iter().all(|material| material.rubber.is_some())
+}
+
+/// Takes elements that hold a pressure, or the volume at nodes, where all materials of the mesh are rubber; gives the reason, where it did.
+fn take_elements_of_rubber(mesh: &Mesh, document: &mut MdpaDocument) -> Option<String> {
+    let mut taken = false;
+    for block in document.elements.iter_mut().filter(|_| is_rubber(mesh)) {
+        let Some((axis, suffix)) = block.name.split_once(LARGE) else { continue };
+        // one pressure does not help the tetrahedron of first order
+        let with = if suffix == "3D4N" { MIXED_LARGE } else { WITH_PRESSURE };
+        let found = [with, MIXED_LARGE].map(|stem| format!("{axis}{stem}{suffix}"));
+        let known = found.into_iter().find(|name| find_kind(EntityRole::Element, name).is_some());
+        if let Some(name) = known {
+            (block.name, taken) = (name, true);
+        }
+    }
+    taken.then(|| "with rubber, which hardly changes its volume".to_owned())
 }
 
 /// Takes elements that do not lock where a material of the mesh hardly changes its volume, or flows; gives the reason, where it did.

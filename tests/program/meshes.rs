@@ -449,6 +449,33 @@ fn orientations_of_abaqus_turn_the_material() {
     }
 }
 
+/// ANALYTIC: a bar pulled to λ = 1.5 carries 2 (λ − λ⁻²)(C₁₀ + C₀₁/λ) by initial area where it keeps its volume; κ = 1000 μ is 1e-3 away.
+/// The energies of one material by four cards agree.
+#[test]
+fn energies_of_abaqus_are_those_of_rubber() {
+    let cards = "*BOUNDARY\nLOW, 3, 3\n1, 1, 2\n3, 2, 2\n*STEP, NLGEOM\n*STATIC\n0.25, 1.\n*BOUNDARY\nTOP, 3, 3, 0.5\n*END STEP\n";
+    let l: f64 = 1.5;
+    let force_of = |material: &str| {
+        let (_scratch, simulation, said) = of_input(&block_of_abaqus(material, "", cards));
+        assert!(!said.contains("warning"), "{material}: {said}");
+        reaction(&simulation, 2)
+    };
+    let expected = 2.0 * (l - l.powi(-2)) * (0.4 + 0.1 / l);
+    for material in [
+        "*HYPERELASTIC, MOONEY-RIVLIN\n0.4, 0.1, 0.002\n",
+        "*HYPERELASTIC, N=2\n0.4, 0.1, 0., 0., 0., 0.002, 0.\n",
+        "*HYPERELASTIC, OGDEN, N=2\n0.8, 2., 0.2, -2., 0.002, 0.\n",
+        "*HYPERELASTIC, MOONEY-RIVLIN\n0.4, 0.1, 0.\n",
+    ] {
+        let force = force_of(material);
+        assert!((force / expected - 1.0).abs() < 1e-3, "{material}: {force} instead of {expected}");
+    }
+    let x = l * l + 2.0 / l - 3.0;
+    let expected = 2.0 * (l - l.powi(-2)) * (0.4 + 0.2 * x + 0.03 * x * x);
+    let force = force_of("*HYPERELASTIC, YEOH\n0.4, 0.1, 0.01, 0.002\n");
+    assert!((force / expected - 1.0).abs() < 1e-3, "{force} instead of {expected}");
+}
+
 /// A bar that is heated by 50 over its initial 20 degrees between fixed ends: E α ΔT = 1000 · 1e-4 · 50 = 5.
 #[test]
 fn temperatures_of_abaqus_expand() {

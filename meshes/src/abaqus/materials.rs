@@ -6,6 +6,7 @@ use zelus_core::diagnostics::Result;
 use zelus_core::vector3::{cross, norm, scale, sub};
 
 use super::cards::Card;
+use super::hyperelastic;
 use super::model::{Model, Statement};
 use super::sets::Kind;
 use crate::conditions::{Axes, MaterialAxes};
@@ -19,7 +20,7 @@ impl Model {
         for Statement { card, scope, .. } in statements {
             let read = match card.keyword.as_str() {
                 "MATERIAL" => self.material(card).map(|at| under_way = Some(at)),
-                "ELASTIC" | "DENSITY" | "PLASTIC" | "EXPANSION" => self.of_material(card, under_way),
+                "ELASTIC" | "HYPERELASTIC" | "DENSITY" | "PLASTIC" | "EXPANSION" => self.of_material(card, under_way),
                 "ORIENTATION" => orientation(card).map(|(name, axes)| {
                     orientations.insert(name, axes);
                 }),
@@ -72,6 +73,7 @@ impl Model {
         let at = under_way.ok_or_else(|| card.wrong(format!("*{} stands below no *MATERIAL", card.keyword)))?;
         match card.keyword.as_str() {
             "ELASTIC" => self.elastic(card, at),
+            "HYPERELASTIC" => self.hyperelastic(card, at),
             "DENSITY" => {
                 card.is_read.set(true);
                 let numbers = card.all_numbers()?;
@@ -127,6 +129,29 @@ impl Model {
         let material = &mut self.mesh.materials[at];
         (material.young, material.poisson) = (Some(young), poisson);
         material.elastic_table = if table.len() > 1 { table } else { Vec::new() };
+        Ok(())
+    }
+
+    fn hyperelastic(&mut self, card: &Card, at: usize) -> Result<()> {
+        card.is_read.set(true);
+        let name = &self.mesh.materials[at].name;
+        match hyperelastic::of(card)? {
+            Some((rubber, further)) => {
+                if further {
+                    let fact = format!(
+                        "*HYPERELASTIC: constants of the volume after the first, of material {name}, are not read"
+                    );
+                    self.report.push(card.left_out(fact));
+                }
+                self.mesh.materials[at].rubber = Some(rubber);
+            }
+            None => {
+                let fact = format!(
+                    "*HYPERELASTIC of material {name} is not read: its energy, or test data instead of constants"
+                );
+                self.report.push(card.left_out(fact));
+            }
+        }
         Ok(())
     }
 

@@ -12,6 +12,7 @@ mod unread;
 mod schedule;
 mod model;
 mod surfaces;
+mod hyperelastic;
 mod materials;
 mod contact;
 mod couplings;

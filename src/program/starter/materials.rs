@@ -6,6 +6,8 @@ use zelus_meshes::mesh::{Material, Mesh, Plane};
 
 /// Young's modulus of steel in N and mm, where a mesh has no materials.
 pub(super) const STEEL: f64 = 210_000.0;
+/// Bulk modulus over the shear modulus of rubber that keeps its volume.
+const BULK_RATIO: f64 = 1000.0;
 /// Plastic strain and slope factor beyond a yield curve: its last stress stays.
 const BEYOND: f64 = 10.0;
 
@@ -13,7 +15,8 @@ const BEYOND: f64 = 10.0;
 pub(super) fn text(mesh: &Mesh, space: usize, whole: Option<&Material>, said: &mut Vec<Diagnostic>) -> String {
     let mut entries = Vec::new();
     for (at, own) in parts(mesh).iter().enumerate() {
-        let known = own.material.filter(|material| material.young.is_some() || material.orthotropic.is_some());
+        let has_elasticity = |own: &&Material| own.young.is_some() || own.orthotropic.is_some() || own.rubber.is_some();
+        let known = own.material.filter(has_elasticity);
         let remark = match (known, own.material) {
             (None, _) if whole.is_some() => whole.map(|material| material.name.clone()).unwrap_or_default(),
             (Some(material), _) if material.name.ends_with(')') => material.name.clone(),
@@ -40,6 +43,7 @@ pub(super) fn text(mesh: &Mesh, space: usize, whole: Option<&Material>, said: &m
             variables.push(format!("\"THERMAL_EXPANSION_COEFFICIENT\": {coefficient:?}"));
             variables.push(format!("\"REFERENCE_TEMPERATURE\": {:?}", expansion.reference));
         }
+        keeps_volume(material, said);
         let yields = !material.yield_curve.is_empty();
         let law = law(mesh, space, material, expands);
         if yields && !law.contains("Plasticity") {
@@ -75,14 +79,18 @@ pub(super) fn text(mesh: &Mesh, space: usize, whole: Option<&Material>, said: &m
 fn law(mesh: &Mesh, space: usize, material: &Material, expands: bool) -> String {
     let (solid, plane) = (space == 3, mesh.plane);
     let heated = if expands { "Thermal" } else { "" };
-    if material.orthotropic.is_some() {
+    if material.rubber.is_some() || material.orthotropic.is_some() {
         let ending = match (solid, plane) {
             (true, _) => "3DLaw",
             (_, Some(Plane::Stress)) => "2DLaw",
             (_, Some(Plane::Axial)) => "Axisym2DLaw",
             (..) => "PlaneStrain2DLaw",
         };
-        return format!("{heated}LinearElasticOrthotropic{ending}");
+        return match &material.rubber {
+            // rubber in plane stress is not there: `check` names what fits
+            Some(rubber) => format!("{}{ending}", rubber.law),
+            None => format!("{heated}LinearElasticOrthotropic{ending}"),
+        };
     }
     let ending = match (solid, plane) {
         (true, _) => Some("3D"),
@@ -107,8 +115,29 @@ fn law(mesh: &Mesh, space: usize, material: &Material, expands: bool) -> String 
     .to_owned()
 }
 
+/// Notes the bulk modulus that rubber without one gets.
+fn keeps_volume(material: &Material, said: &mut Vec<Diagnostic>) {
+    if let Some(rubber) = material.rubber.as_ref().filter(|rubber| rubber.bulk_modulus.is_none()) {
+        let bulk = BULK_RATIO * rubber.shear_modulus;
+        let fact = format!(
+            "{}: the mesh file gives no D1; BULK_MODULUS is {bulk:?}, 1000 times the shear modulus",
+            material.name
+        );
+        said.push(Diagnostic::note("not-taken-over", fact));
+    }
+}
+
 /// Elastic constants. Axis 2 of cylindrical axes runs along the cylinder here and around it in input files.
 fn elasticity(material: &Material, is_around: bool) -> Vec<String> {
+    if let Some(rubber) = &material.rubber {
+        let number = |(name, values): &(&str, Vec<f64>)| match values.as_slice() {
+            [one] if !name.starts_with("OGDEN") => format!("\"{name}\": {one:?}"),
+            several => format!("\"{name}\": {several:?}"),
+        };
+        let bulk = rubber.bulk_modulus.unwrap_or(BULK_RATIO * rubber.shear_modulus);
+        let constants = rubber.constants.iter().map(number);
+        return constants.chain([format!("\"BULK_MODULUS\": {bulk:?}")]).collect();
+    }
     let Some([e1, e2, e3, n12, n13, n23, g12, g13, g23]) = material.orthotropic else {
         let young = material.young.unwrap_or_default();
         return vec![format!("\"YOUNG_MODULUS\": {young:?}"), format!("\"POISSON_RATIO\": {:?}", material.poisson)];
