@@ -55,6 +55,7 @@ impl EnergyKind {
 
     /// The energy of a law, by the name of the law or its beginning.
     pub fn of_law(law: &str) -> Option<&'static Self> {
+        let law = law.strip_prefix("Thermal").unwrap_or(law);
         Self::all().into_iter().find(|kind| {
             law.strip_prefix(kind.name)
                 .is_some_and(|rest| ["", "3DLaw", "PlaneStrain2DLaw", "Axisym2DLaw"].contains(&rest))

@@ -369,6 +369,24 @@ fn unloaded_rubber_is_softer() {
     }
 }
 
+/// ANALYTIC: F = θ F_m has the Cauchy stress of F_m, θ = 1 + α (T − T₀): 1e-12.
+#[test]
+fn rubber_expands() {
+    let more = [("THERMAL_EXPANSION_COEFFICIENT", 1e-3), ("REFERENCE_TEMPERATURE", 300.0)];
+    let f = gradient::<6>(&mut Random(9), 0.3);
+    for case in &CASES {
+        let name = format!("Thermal{}3DLaw", case.name);
+        let warm = law_of::<6>(&properties(&name, &[case.numbers, &more].concat(), case.lists), false).unwrap();
+        let of = |f: Tensor| {
+            let state = StrainState { temperature: 350.0, ..state(f, &[]) };
+            stress_tensor(&warm.stress(&state, StressMeasure::Cauchy, None))
+        };
+        assert!(of(1.05 * IDENTITY).norm() < 1e-12 * BULK, "{name}");
+        let error = (of(1.05 * f) - cauchy(law::<6>(case, &[], &[]).as_ref(), f)).norm();
+        assert!(error < 1e-12 * BULK, "{name}: {error:e}");
+    }
+}
+
 /// The nominal stresses that are fitted are those of the law, and constants with a falling stress are found.
 #[test]
 fn instabilities_are_found() {
