@@ -20,7 +20,8 @@ def run(n, family="ALM", shapes=("2D4N", "2D4N"), friction=None, slave="upper", 
             m.roll(body.side_nodes[axis + "0"], **{axis: 0.0})
             v = [0.0] * dim
             v[d] = -PRESSURE
-            m.traction(body, axis + "1", v)
+            if body is low or rise < 1.0:  # at 45° the upper body ends in an edge
+                m.traction(body, axis + "1", v)
     m.roll(low.side_nodes[up + "0"], **{up: 0.0})
     m.traction(top, up + "1", [0.0] * last + [-PRESSURE])
     sides = [(top, up + "0"), (low, up + "1")]
