@@ -237,9 +237,11 @@ impl Mesh {
     }
 }
 
-/// A name as a deck can use it: separators of words and parts become an underscore.
+/// A name as a deck can use it: separators of words and parts become an underscore, and one follows the words `Begin` and `End`, which
+/// open and close the blocks of a mesh file.
 pub fn word(name: &str) -> String {
-    let name: String = name.trim().trim_matches('"').chars().collect();
+    let name = name.trim().trim_matches('"');
     let keeps = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | '+');
-    name.chars().map(|c| if keeps(c) { c } else { '_' }).collect()
+    let own: String = name.chars().map(|c| if keeps(c) { c } else { '_' }).collect();
+    if matches!(own.as_str(), "Begin" | "End") { own + "_" } else { own }
 }

@@ -25,6 +25,20 @@ fn solved(deck: &Path) -> Simulation {
     simulation
 }
 
+/// Names that open and close blocks of a mesh file, or have spaces, are names of parts.
+#[test]
+fn any_name_of_a_physical_group_is_a_part() {
+    let scratch = tempfile::tempdir().unwrap();
+    let mesh = std::fs::read_to_string(data("pyramids_1.msh")).unwrap();
+    for (deck, name) in [("a", "End"), ("b", "Begin"), ("c", "Top Face")] {
+        std::fs::write(scratch.path().join("body.msh"), mesh.replace("\"Skin\"", &format!("\"{name}\""))).unwrap();
+        let output = zelus(scratch.path(), &["new", "--from", "body.msh", "--fix", name, "-o", deck]);
+        assert!(output.status.success(), "{name}: {}", said(&output));
+        let output = zelus(&scratch.path().join(deck), &["check", "ProjectParameters.json"]);
+        assert!(output.status.success(), "{name}: {}", said(&output));
+    }
+}
+
 /// Two blocks of Abaqus, pressed together: stress is the pressure everywhere, and the top goes down by 2 p / E.
 #[test]
 fn blocks_of_abaqus_are_pressed_together_without_a_hand_s_work() {

@@ -4,7 +4,7 @@ use zelus_core::Result;
 use zelus_core::diagnostics::{Diagnostic, did_you_mean};
 use zelus_meshes::conditions::{Load, LoadKind, Support};
 use zelus_meshes::history::History;
-use zelus_meshes::mesh::{Material, Mesh, Section};
+use zelus_meshes::mesh::{Material, Mesh, Section, word};
 
 use super::formulations::Formulation;
 use super::{known_materials, stepping};
@@ -52,13 +52,13 @@ impl Options {
     pub(super) fn apply(&self, mesh: &mut Mesh) -> Result<Option<Material>> {
         for text in &self.fix {
             let (part, directions) = text.split_once('=').unwrap_or((text, "xyz"));
-            check_part(mesh, part, "--fix")?;
+            let part = part_named(mesh, part, "--fix")?;
             let is_known = !directions.is_empty() && directions.chars().all(|c| "xyz".contains(c));
             if !is_known {
                 return Err(wrong(format!("--fix {text}: {directions:?} are no directions"), "write e.g. Base=xy"));
             }
             let values = ['x', 'y', 'z'].map(|axis| directions.contains(axis).then(History::default));
-            mesh.supports.push(Support::of(part.to_owned(), values));
+            mesh.supports.push(Support::of(part, values));
         }
         for text in &self.load {
             let load = load_of(text, mesh)?;
@@ -76,14 +76,14 @@ impl Options {
                 whole = Some(known_materials::find(text)?);
                 continue;
             };
-            check_part(mesh, part, "--material")?;
+            let part = part_named(mesh, part, "--material")?;
             let dimension = mesh.dimension();
             let is_body = |cell: &u32| mesh.cells.shapes[*cell as usize].dim() == dimension;
-            if !mesh.group(part).is_some_and(|group| group.cells.iter().any(is_body)) {
+            if !mesh.group(&part).is_some_and(|group| group.cells.iter().any(is_body)) {
                 return Err(wrong(format!("--material {text}: the part {part} has no elements"), "name a body"));
             }
             let material = known_materials::find(name)?;
-            let section = Section { group: part.to_owned(), material: material.name.clone(), thickness: 1.0 };
+            let section = Section { group: part, material: material.name.clone(), thickness: 1.0 };
             mesh.sections.push(section);
             mesh.materials.push(material);
         }
@@ -95,9 +95,11 @@ fn wrong(fact: String, remedy: &str) -> zelus_core::Error {
     Diagnostic::error("command-line", fact).remedy(remedy).into()
 }
 
-fn check_part(mesh: &Mesh, part: &str, option: &str) -> Result<()> {
-    if mesh.group(part).is_some() {
-        return Ok(());
+/// The part of a name as the file has it.
+fn part_named(mesh: &Mesh, part: &str, option: &str) -> Result<String> {
+    let name = word(part);
+    if mesh.group(&name).is_some() {
+        return Ok(name);
     }
     let names: Vec<&str> = mesh.groups.iter().map(|group| group.name.as_str()).collect();
     let known =
@@ -110,7 +112,7 @@ fn check_part(mesh: &Mesh, part: &str, option: &str) -> Result<()> {
 fn load_of(text: &str, mesh: &Mesh) -> Result<Load> {
     let form = "write a force as Top=1000N,-z and a pressure as Bore=5MPa";
     let (part, value) = text.split_once('=').ok_or_else(|| wrong(format!("--load {text} has no value"), form))?;
-    check_part(mesh, part, "--load")?;
+    let part = part_named(mesh, part, "--load")?;
     let (size, direction) = value.split_once(',').map_or((value, None), |(size, direction)| (size, Some(direction)));
     let units = [("MPa", 1.0), ("kN", 1000.0), ("N", 1.0)];
     let unit = units.iter().find_map(|(unit, factor)| Some((size.strip_suffix(unit)?, *unit, *factor)));
@@ -136,11 +138,11 @@ fn load_of(text: &str, mesh: &Mesh) -> Result<Load> {
             )
         }
     };
-    let has_faces = mesh.group(part).is_some_and(|group| {
+    let has_faces = mesh.group(&part).is_some_and(|group| {
         group.cells.iter().any(|&cell| mesh.cells.shapes[cell as usize].dim() + 1 == mesh.dimension())
     });
     if matches!(kind, LoadKind::Pressure(_)) && !has_faces {
         return Err(wrong(format!("--load {text}: the part {part} has no faces"), "name a surface"));
     }
-    Ok(Load { group: part.to_owned(), kind })
+    Ok(Load { group: part, kind })
 }
