@@ -139,6 +139,27 @@ fn a_follower_force_rotates_with_its_part() {
     }
 }
 
+/// ANALYTIC: two forces on one face act together, and neither counts as listed twice.
+#[test]
+fn forces_on_one_face_add_up() {
+    let grid = Grid::new(Shape::Hex8, &[2, 2, 2], |p| p);
+    let mut deck = Deck::new(
+        &grid,
+        "SmallDisplacementElement",
+        "LinearElastic3DLaw",
+        json!({"YOUNG_MODULUS": 1e9, "POISSON_RATIO": 0.3}),
+    );
+    deck.fix(|p| p[0] == 0.0, [zero(), zero(), zero()]);
+    let end = deck.facets(|p| p[0] == 1.0, "SurfaceLoadCondition");
+    for force in [[0.0, 0.0, 4.0], [0.0, 3.0, 0.0]] {
+        deck.process(FORCE, json!({"model_part_name": format!("Structure.{end}"), "load": force}));
+    }
+    let ran = deck.run();
+    assert_vector(loads(&ran)[0], [0.0, 3.0, 4.0], 5.0, "two forces");
+    let warnings = &ran.report.warnings;
+    assert!(!warnings.iter().any(|words| words.contains("listed-twice")), "{warnings:?}");
+}
+
 /// A moment about a line of nodes and loads out of the plane are named before the run.
 #[test]
 fn mistakes_are_named() {

@@ -8,6 +8,7 @@ use zelus_linear_algebra::parallel;
 use crate::assembly::{DofTable, Equations};
 use crate::diagnostics::{Diagnostic, Report, Result, counted};
 use crate::geometry::Shape;
+use crate::model::flags::NEW_ENTITY;
 use crate::model::{
     EntityRole, EntityTable, ModelPart, NodeUnknown, Owner, ScalarVariable, SubPart, SupportConflict,
     SupportedComponent, mesh_box, reduce_supports,
@@ -27,13 +28,13 @@ const ENTITIES: usize = 1 << 12;
 /// Lists of entities that are sorted side by side.
 const LISTS: usize = 64;
 
-/// Warns of solid elements, and of conditions of one kind, on the same nodes as others: their stiffness, mass and loads count
-/// twice.
+/// Warns of solid elements, and of conditions of one kind, on the same nodes as others of the mesh: their stiffness, mass and loads
+/// count twice.
 pub(super) fn warn_of_twins(part: &ModelPart, problems: &mut Report) {
     for (role, table) in [(EntityRole::Element, &part.elements), (EntityRole::Condition, &part.conditions)] {
         let solid = |at: u32| table.kinds[at as usize].cell.is_some_and(|cell| cell.dim() == part.info.domain_size);
-        let wanted =
-            |at: u32| if role == EntityRole::Element { solid(at) } else { table.kinds[at as usize].cell.is_some() };
+        let of_mesh = |at: u32| table.kinds[at as usize].cell.is_some() && !table.flags.is(NEW_ENTITY, at as usize);
+        let wanted = |at: u32| if role == EntityRole::Element { solid(at) } else { of_mesh(at) };
         // Two loads of one surface are two conditions, in parts of their own.
         let mut twins = twins(table, wanted);
         twins.retain(|pair| role == EntityRole::Element || share_part(&part.tree, pair));

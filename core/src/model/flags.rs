@@ -47,6 +47,7 @@ register_flags! {
     pub FLUID = "Part of a fluid. Free mark, which nothing reads.";
     pub INTERACTION = "Interacts. Free mark, which nothing reads.";
     pub INLET = "On an inlet. Free mark, which nothing reads.";
+    pub NEW_ENTITY = "Made by a process, not read from the mesh: several loads of one place are several of them.";
     pub RELATIVE = "Its displacement is a motion of two sides of a cut against each other, as of a bolt's section; its force acts between them.";
     pub OUTLET = "On an outlet. Free mark, which nothing reads.";
 }

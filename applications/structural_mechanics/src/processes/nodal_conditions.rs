@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use zelus_core::diagnostics::Result;
 use zelus_core::entities::require_kind;
+use zelus_core::model::flags::NEW_ENTITY;
 use zelus_core::model::{EntityRole, ModelPart};
 
 /// Adds a condition at each of these nodes, which every rank has; gives their places among the conditions. `name` is that of the
@@ -31,7 +32,8 @@ fn push_conditions(part: &mut ModelPart, name: &str, nodes: &[u32], next: usize)
     let properties = part.properties.keys().next().copied().unwrap_or(0);
     let first = part.conditions.len();
     for (id, &node) in (next..).zip(nodes) {
-        part.conditions.push(id, kind, properties, &[node]);
+        let made = part.conditions.push(id, kind, properties, &[node]);
+        part.conditions.flags.set(NEW_ENTITY, made as usize, true);
     }
     part.conditions.finish();
     let made = first..part.conditions.len();
