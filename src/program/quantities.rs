@@ -6,7 +6,7 @@ use zelus_core::model::variables;
 pub(super) const FIRST_FIELDS: [&str; 4] = ["VON_MISES_STRESS", "CONTACT_PRESSURE", "TEMPERATURE", "DISPLACEMENT"];
 
 /// Name, words and unit.
-const KNOWN: [(&str, &str, &str); 19] = [
+const KNOWN: [(&str, &str, &str); 22] = [
     ("DISPLACEMENT", "displacement", "length"),
     ("REACTION", "reaction", "force"),
     ("TEMPERATURE", "temperature", "degrees"),
@@ -18,6 +18,9 @@ const KNOWN: [(&str, &str, &str); 19] = [
     ("MIN_PRINCIPAL_STRESS", "smallest principal stress", ""),
     ("TRESCA_STRESS", "Tresca stress", ""),
     ("HYDROSTATIC_PRESSURE", "hydrostatic pressure", ""),
+    ("EQUIVALENT_PLASTIC_STRAIN", "equivalent plastic strain", "–"),
+    ("EQUIVALENT_CREEP_STRAIN", "equivalent creep strain", "–"),
+    ("DAMAGE", "damage", "–"),
     ("SAFETY_FACTOR", "safety factor to yield", "–"),
     ("CONTACT_PRESSURE", "contact pressure", "force/area"),
     ("CONTACT_TRACTION", "contact traction", "force/area"),

@@ -90,6 +90,28 @@ fn a_safety_factor_needs_a_yield_stress() {
     assert_close(ran.report.smallest["SAFETY_FACTOR"], 1000.0, 1e-12, "mean of the largest factor");
 }
 
+/// ANALYTIC: sheared beyond yield, ideal plasticity keeps γ − τ_y/G in √3 ε_p. The report has the strain without a word of the deck, and
+/// that of an elastic law has none.
+#[test]
+fn plastic_strain_is_reported_where_a_law_has_it() {
+    let (shear, lame, name) = (0.01, LAME, "EQUIVALENT_PLASTIC_STRAIN");
+    let grid = Grid::new(Shape::Hex8, &[2, 2, 2], |p| p);
+    for (law, exact) in [
+        ("SmallStrainJ2Plasticity3DLaw", Some((shear - YIELD / 3f64.sqrt() / lame) / 3f64.sqrt())),
+        ("LinearElastic3DLaw", None),
+    ] {
+        let material = json!({"YOUNG_MODULUS": YOUNG, "POISSON_RATIO": POISSON, "YIELD_STRESS": YIELD});
+        let mut deck = Deck::new(&grid, "SmallDisplacementElement", law, material);
+        deck.fix(|_| true, [json!(format!("{shear:e}*y")), json!(0.0), json!(0.0)]);
+        let ran = deck.run();
+        let found = ran.report.largest.get(name);
+        assert_eq!(found.is_some(), exact.is_some(), "{law}");
+        if let Some((found, exact)) = found.zip(exact) {
+            assert_close(*found, exact, 1e-9, "largest plastic strain");
+        }
+    }
+}
+
 /// The extremes of a bent bar are at its clamped edge: the nodes of the report are where they should be.
 #[test]
 fn extremes_have_their_places() {

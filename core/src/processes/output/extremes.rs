@@ -9,7 +9,7 @@ use super::quantity::GaussQuantity;
 use super::usual::{history, values};
 use crate::assembly::System;
 use crate::io::results::Column;
-use crate::model::{EntityRole, ModelPart, UsualResults};
+use crate::model::{ModelPart, UsualResults};
 
 /// A result at the node where it is largest or smallest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -50,7 +50,7 @@ impl Extremes {
         let mut of_stress =
             |names: Vec<&'static str>, sign: f64, into: fn(&mut Self) -> &mut BTreeMap<String, Extreme>| {
                 for quantity in names.into_iter().filter_map(|name| GaussQuantity::new(name).ok()) {
-                    let at_nodes = scalars_at_nodes(part, system, EntityRole::Element, &quantity);
+                    let at_nodes = scalars_at_nodes(part, system, &quantity);
                     let found = extreme(part, sign, |node| at_nodes[node]);
                     into(&mut out).extend(found.map(|found| (quantity.name.clone(), found)));
                 }

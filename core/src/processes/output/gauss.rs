@@ -1,6 +1,6 @@
 //! Quantities at Gauss points, as means of entities, as values at nodes, and as they are.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use zelus_linear_algebra::parallel;
 
@@ -27,6 +27,23 @@ pub(super) fn is_known(system: &System, kind: EntityRole, quantity: &GaussQuanti
     let names = [Some(quantity.name.as_str()), quantity.vector.as_deref()];
     let knows = |known: &[&str]| names.into_iter().flatten().any(|name| known.contains(&name));
     system.blocks(kind).iter().any(|block| knows(block.gauss_variables()))
+}
+
+/// Whether an element of this rank gives the quantity: some laws know names that others do not. The first element of each material
+/// answers for all.
+pub(super) fn is_given(part: &ModelPart, system: &System, quantity: &GaussQuantity) -> bool {
+    let view = part.view();
+    let names = [Some(quantity.name.as_str()), quantity.vector.as_deref()];
+    system.blocks(EntityRole::Element).iter().any(|block| {
+        let known = block.gauss_variables();
+        let Some(name) = names.into_iter().flatten().find(|name| known.contains(name)) else { return false };
+        let mut asked = BTreeSet::new();
+        let mut members = block.members().iter().enumerate();
+        members.any(|(at, &member)| {
+            asked.insert(part.elements.properties[member as usize])
+                && values_of(block.as_ref(), &view, name, at).is_some()
+        })
+    })
 }
 
 /// Calls `visit` with the position in `selected`, the entity and its values for every element (or condition) of this rank
@@ -191,18 +208,13 @@ pub(super) fn at_nodes(
     Column::real(&quantity.name, components, values)
 }
 
-/// A number at all nodes as [`at_nodes`] gives it by volume, `None` where no entity around a node knows it. Collective.
-pub(super) fn scalars_at_nodes(
-    part: &ModelPart,
-    system: &System,
-    kind: EntityRole,
-    quantity: &GaussQuantity,
-) -> Vec<Option<f64>> {
-    if !part.ranks.any(is_known(system, kind, quantity)) {
+/// A number at all nodes as [`at_nodes`] gives it by volume, `None` where no element around a node knows it. Collective.
+pub(super) fn scalars_at_nodes(part: &ModelPart, system: &System, quantity: &GaussQuantity) -> Vec<Option<f64>> {
+    if !part.ranks.any(is_given(part, system, quantity)) {
         return vec![None; part.nodes.len()];
     }
     let all: Vec<u32> = (0..part.elements.len() as u32).collect();
-    let sums = NodalSums::of(part, system, kind, &all, quantity, GaussWeight::Volume);
+    let sums = NodalSums::of(part, system, EntityRole::Element, &all, quantity, GaussWeight::Volume);
     (0..part.nodes.len()).map(|node| sums.mean(node)?.next()).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Default contents of a picture, where the deck names nothing.
 
-use super::gauss::is_known;
+use super::gauss::is_given;
 use super::quantity::{GaussQuantity, Quantity};
 use crate::assembly::System;
 use crate::communication::Ranks;
@@ -19,10 +19,10 @@ pub(super) fn values(part: &ModelPart) -> Vec<Quantity> {
     names.filter_map(|name| Quantity::new(name).ok()).collect()
 }
 
-/// Default variables that elements of any rank know at their Gauss points; collective.
+/// Default variables that elements of any rank give at their Gauss points; collective.
 pub(super) fn gauss(part: &ModelPart, system: &System) -> Vec<GaussQuantity> {
     let all = UsualResults::gauss().into_iter().filter_map(|name| GaussQuantity::new(name).ok());
-    all.filter(|quantity| part.ranks.any(is_known(system, EntityRole::Element, quantity))).collect()
+    all.filter(|quantity| part.ranks.any(is_given(part, system, quantity))).collect()
 }
 
 /// For each of these cells the place of the first sub part that has it, from 1 in the order of names, of those that have
