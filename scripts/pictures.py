@@ -47,6 +47,14 @@ ASSEMBLIES = {
     "slope": "--field DISPLACEMENT --unit mm --view -0.3,-1,0.3",
     "cyclic_sector": f"--view -0.3,-0.5,1 {N_MM}",
     "orthotropic_tube": "--mirror y --field DISPLACEMENT --unit mm --view 0.6,-1,0.5",
+    "rigid_body": f"--view 1,-0.5,0.35 {N_MM}",
+    "clearance": f"--view -0.2,-0.6,1 {N_MM}",
+    "ground_springs": "--field DISPLACEMENT --unit mm --view -0.5,-1,0.8",
+    "cylindrical_support": f"--view 0.4,-1,0.35 {N_MM}",
+    "hardening": "--mirror x --mirror y --field EQUIVALENT_PLASTIC_STRAIN",
+    "creep": "--mirror x --mirror y --field EQUIVALENT_CREEP_STRAIN",
+    "spherical_support": f"--view -0.2,-1,0.3 --mirror y {N_MM}",
+    "pyramids": f"--view -0.6,-1,0.5 {N_MM}",
     "bolt": f"--view -0.3,-1,0.45 --factor 20 {N_MM}",
 }
 VTU = {"python_module": "vtu_output_process", "Parameters": {"model_part_name": "", "output_path": "pictures"}}
@@ -120,8 +128,8 @@ def run_assembly(name, program, folder):
     """Runs a deck of scripts/assemblies.py; the folder with its report."""
     import assemblies
     from lib import solution
-    if name == "bolt":
-        folder = assemblies.bolt(program, folder)
+    if name in assemblies.GMSH:
+        folder = assemblies.GMSH[name](program, folder)
         prepare(folder, "ProjectParameters.json")
         run_deck("ProjectParameters.json", program, folder)
         return folder
