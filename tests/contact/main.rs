@@ -14,6 +14,7 @@ mod corners;
 mod elastic_start;
 mod flange;
 mod free_bodies;
+mod friction_laws;
 mod interface_surfaces;
 mod lift_off;
 mod like_kratos;

@@ -7,8 +7,9 @@ use zelus::contact_structural_mechanics::interface::{
     Bodies, Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles,
 };
 use zelus::contact_structural_mechanics::law::{
-    Augmentation, COULOMB, Margin, Multiplier, Nitsche, NitscheVariant, NormalVariation, SlipRule, StepParameters,
+    Augmentation, Margin, Multiplier, Nitsche, NitscheVariant, NormalVariation, SlipRule, StepParameters,
 };
+use zelus::contact_structural_mechanics::laws::friction::COULOMB;
 use zelus::contact_structural_mechanics::mortar::{IntegrationOrder, OperatorThreshold, SegmentationSettings};
 use zelus::contact_structural_mechanics::pairs::{
     ContactBlock, Pair, PairKey, PairRequest, condition_name, find_formulation, group_by_surroundings,

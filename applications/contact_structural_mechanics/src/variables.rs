@@ -1,12 +1,14 @@
 //! The variables of contact.
 
 use zelus_core::model::VariableEntry;
-use zelus_core::{register_absent, register_usual_results, register_variable};
+use zelus_core::{register_absent, register_material_range, register_usual_results, register_variable};
 
 register_usual_results! {
     values: ["CONTACT_PRESSURE", "CONTACT_TRACTION", "CONTACT_GAP", "CONTACT_SLIP", "CONTACT_STATUS", "CONTACT_FORCE"],
     gauss: []
 }
+
+register_material_range! { "[0, inf)": ["KINETIC_FRICTION_COEFFICIENT", "FRICTION_DECAY"] }
 
 register_variable! {
     pub LAGRANGE_MULTIPLIER_CONTACT_PRESSURE: f64 = "Normal contact pressure divided by SCALE_FACTOR, negative in compression.";
@@ -27,6 +29,8 @@ register_variable! {
     pub MULTIPLIER_WEIGHT: f64 = "Weight of the multiplier in the equation of a slave node that states a traction (force times area).";
     pub DYNAMIC_FACTOR: f64 = "Factor of contact forces in the step in which a gap closes.";
     pub FRICTION_COEFFICIENT: f64 = "Coulomb's coefficient of friction.";
+    pub KINETIC_FRICTION_COEFFICIENT: f64 = "Coefficient of friction at high sliding speeds.";
+    pub FRICTION_DECAY: f64 = "Decay of friction with the sliding speed (time per length).";
     pub TRESCA_FRICTION_THRESHOLD: f64 = "Tresca's limit of the tangential traction (force per area).";
     pub TANGENT_XI: [f64; 3] = "Unit tangent of the slave surface in the direction of sliding.";
     pub TANGENT_ETA: [f64; 3] = "Unit tangent of the slave surface across the direction of sliding: TANGENT_XI, TANGENT_ETA and the normal are right-handed.";

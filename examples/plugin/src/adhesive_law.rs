@@ -13,8 +13,10 @@ register! { FrictionLawEntry "Adhesive",
     about: "limit of the tangential traction: ADHESION and a fifth of the pressure",
     source: "|t| ≤ c − μ p",
     build: FrictionLaw {
-        variable: &ADHESION,
-        bound: |threshold| Bound { coefficient: 0.2, threshold },
+        strengths: &[&ADHESION],
+        constants: &[],
+        bound: |numbers, _| Bound { coefficient: 0.2, threshold: numbers[0] },
+        depends_on_sliding: false,
         by_coefficients: false,
     },
 }

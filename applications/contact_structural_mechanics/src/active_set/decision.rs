@@ -12,7 +12,7 @@ use crate::friction::slip;
 use crate::interface::SlaveIndex;
 use crate::law::constrained_multiplier::along_free_tangents;
 use crate::law::rules::{self, Decision, SlaveNumbers};
-use crate::law::{Augmentation, MultiplierConstraint, NodeState, StepParameters};
+use crate::law::{Augmentation, MultiplierConstraint, NodeState, Sliding, StepParameters};
 use crate::mortar::{tangent, tangential};
 use crate::pairs::{Formulation, Multiplier};
 use crate::settings::Setup;
@@ -34,6 +34,23 @@ impl<'a> Rules<'a> {
     /// Rules with the settings and numbers of a setup.
     pub(crate) fn of(setup: &'a Setup) -> Self {
         Self { formulation: setup.settings.formulation, parameters: &setup.parameters, tolerances: setup.tolerances }
+    }
+
+    /// Takes the bounds of a law of friction that depends on the sliding from the present state of every slave node.
+    pub(crate) fn follow_sliding(self, part: &ModelPart, states: &mut SlaveStates) {
+        let law = self.parameters.friction_law;
+        if !law.depends_on_sliding || !self.formulation.frictional() {
+            return;
+        }
+        let bound = |slave: SlaveIndex| {
+            let numbers = self.numbers(part, states, slave);
+            let speed = norm(numbers.slip) / part.info.delta_time;
+            let sliding = Sliding { pressure: numbers.pressure().min(0.0), speed };
+            law.bound_at(&part.nodes, states.mesh_node(slave) as usize, sliding)
+        };
+        let bounds: Vec<_> = states.slaves().iter().map(|&slave| bound(slave)).collect();
+        let mut bounds = bounds.into_iter();
+        states.for_each(|_, state| state.parameters.friction = bounds.next().expect("one a slave node"));
     }
 
     /// The decision for every slave node, and the states the nodes are in.

@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 use zelus_core::entities::OuterLoop;
-use zelus_core::model::ModelPart;
+use zelus_core::model::{ModelPart, Variable};
 use zelus_core::vector3::{norm, scale};
 
 use crate::law::FrictionLaw;
@@ -25,10 +25,10 @@ pub(crate) struct FrictionRamp {
     failed: usize,
     /// Whether the present one is solved.
     solved: bool,
-    /// Where in [`SHARES`] the step is, and the numbers of the law at the nodes, while not all of it acts; between steps
+    /// Where in [`SHARES`] the step is, and the strengths of the law at the nodes, while not all of it acts; between steps
     /// nothing waits.
     #[serde(skip)]
-    waiting: Option<(usize, Vec<f64>)>,
+    waiting: Option<(usize, Vec<Vec<f64>>)>,
 }
 
 impl FrictionRamp {
@@ -56,10 +56,16 @@ impl FrictionRamp {
     /// holds a body.
     pub(crate) fn begin_step(&mut self, part: &mut ModelPart, law: &FrictionLaw) {
         self.solved = false;
-        let column = part.nodes.values.values_mut(law.variable, 0);
-        self.waiting = (self.failed > 0 && self.failed.is_multiple_of(2)).then(|| (0, column.to_vec()));
-        if self.waiting.is_some() {
-            column.fill(0.0);
+        if self.failed > 0 && self.failed.is_multiple_of(2) {
+            let take = |variable: &&Variable<f64>| {
+                let column = part.nodes.values.values_mut(*variable, 0);
+                let numbers = column.to_vec();
+                column.fill(0.0);
+                numbers
+            };
+            self.waiting = Some((0, law.strengths.iter().map(take).collect()));
+        } else {
+            self.waiting = None;
         }
     }
 
@@ -74,8 +80,10 @@ impl FrictionRamp {
     ) -> OuterLoop {
         let Some((stage, numbers)) = self.waiting.take() else { return OuterLoop::Done };
         let share = SHARES[stage + 1];
-        let column = part.nodes.values.values_mut(law.variable, 0);
-        column.iter_mut().zip(&numbers).for_each(|(now, number)| *now = share * number);
+        for (variable, numbers) in law.strengths.iter().zip(&numbers) {
+            let column = part.nodes.values.values_mut(*variable, 0);
+            column.iter_mut().zip(numbers).for_each(|(now, number)| *now = share * number);
+        }
         if stage + 2 < SHARES.len() {
             self.waiting = Some((stage + 1, numbers));
         }

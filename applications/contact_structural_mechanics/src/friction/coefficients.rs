@@ -8,7 +8,8 @@ use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 
 use crate::interface::{Interface, Roles};
-use crate::law::{COULOMB, FrictionLaw, Margin, SlipRule};
+use crate::law::{FrictionLaw, Margin, SlipRule};
+use crate::laws::friction::COULOMB;
 use crate::pairs::Friction;
 
 /// Coefficients that seem to be written in per cent: rough rubber has 2 or so, and far larger ones stand for perfect stick.
@@ -53,7 +54,7 @@ pub(crate) fn prepare(
     let mut largest = 0.0_f64;
     let mut without: Vec<&str> = Vec::new();
     let law = settings.law;
-    let written = part.nodes.values.values(law.variable, 0);
+    let written = part.nodes.values.values(law.variable(), 0);
     let mut overridden: Option<(&str, f64, usize, f64)> = None;
     for interface in interfaces {
         let listed = settings.coefficients.get(&interface.key).copied().filter(|_| law.by_coefficients);
@@ -61,7 +62,7 @@ pub(crate) fn prepare(
         let mut of_sides: [Option<(f64, usize)>; 2] = [None; 2];
         let given = listed.filter(|coefficient| *coefficient > 0.0);
         for facet in &interface.facets {
-            let own = part.properties.get(&facet.properties).and_then(|p| p.number(law.variable.name()));
+            let own = part.properties.get(&facet.properties).and_then(|p| p.number(law.variable().name()));
             if let (Some(own), Some(given)) = (own, given.filter(|given| own != Some(*given))) {
                 overridden.get_or_insert((&interface.key, given, facet.properties, own));
             }
@@ -72,7 +73,7 @@ pub(crate) fn prepare(
                 largest = largest.max(coefficient);
                 is_given |= nodal.is_some();
                 if coefficient < 0.0 {
-                    let (name, id) = (law.variable.name(), facet.properties);
+                    let (name, id) = (law.variable().name(), facet.properties);
                     let fact = format!("{name} of properties {id} is {coefficient}, it must be 0 or more");
                     return Err(Diagnostic::error("negative-friction", fact).remedy("write a number from 0").into());
                 }
@@ -92,7 +93,7 @@ pub(crate) fn prepare(
             && own != other
             && friction == Friction::Coulomb
         {
-            let name = law.variable.name();
+            let name = law.variable().name();
             let fact = format!(
                 "pair \"{}\": {name} is {own} in properties {id} of the slave, and {other} in properties {other_id} of the master: \
                  that of the slave counts",
@@ -103,7 +104,7 @@ pub(crate) fn prepare(
         if bare == slaves {
             without.push(&interface.key);
         } else if bare > 0 && friction == Friction::Coulomb {
-            let name = law.variable.name();
+            let name = law.variable().name();
             let fact = format!(
                 "{bare} of {slaves} slave facets of pair \"{}\" have no {name}: they slide freely",
                 interface.key
@@ -113,7 +114,7 @@ pub(crate) fn prepare(
         }
     }
     if let Some((pair, given, id, own)) = overridden.filter(|_| friction == Friction::Coulomb) {
-        let name = law.variable.name();
+        let name = law.variable().name();
         let fact = format!(
             "\"friction_coefficients\" gives pair \"{pair}\" {given}, {name} of properties {id} is {own}: that of the properties counts"
         );
@@ -124,16 +125,19 @@ pub(crate) fn prepare(
         messages.extend(unread_coefficient(part, interfaces, law));
     }
     if law.by_coefficients && PER_CENT.contains(&largest) {
-        let fact = format!("the largest {} is {largest}", law.variable.name());
+        let fact = format!("the largest {} is {largest}", law.variable().name());
         let remedy = "write the ratio of forces, e.g. 0.3 for 30 %";
         messages.push(Diagnostic::warning("large-friction", fact).remedy(remedy));
     }
-    let column = part.nodes.values.values_mut(law.variable, 0);
+    let column = part.nodes.values.values_mut(law.variable(), 0);
     for (slot, (sum, count)) in column.iter_mut().zip(sums) {
         *slot = sum / count.max(1) as f64;
     }
+    if friction != Friction::None {
+        read_further_numbers(part, interfaces, law)?;
+    }
     if friction == Friction::Coulomb && !without.is_empty() {
-        let name = law.variable.name();
+        let name = law.variable().name();
         let fact = if without.len() == interfaces.len() {
             format!("contact with friction has no {name}: everything slides freely")
         } else {
@@ -148,9 +152,46 @@ pub(crate) fn prepare(
     Ok(if pure { SlipRule::Pure } else { SlipRule::Bounded(settings.margin) })
 }
 
+/// Writes all numbers of the law but the first, the mean over the slave facets of a node.
+///
+/// # Errors
+/// A number that neither the properties nor a node of a slave facet with friction have.
+fn read_further_numbers(part: &mut ModelPart, interfaces: &[Interface], law: &FrictionLaw) -> Result<()> {
+    for variable in law.variables().skip(1) {
+        let mut sums = vec![(0.0, 0_usize); part.nodes.len()];
+        let [first, written] = [law.variable(), variable].map(|own| part.nodes.values.values(own, 0));
+        let facets = interfaces.iter().flat_map(|own| own.facets.iter().map(move |facet| (&own.key, facet)));
+        for (pair, facet) in facets.filter(|(_, facet)| facet.role != Roles::Master) {
+            let own = part.properties.get(&facet.properties).and_then(|p| p.number(variable.name()));
+            for &node in &facet.nodes {
+                let at = node as usize;
+                let number = own.or_else(|| written.get(at).copied().filter(|number| *number > 0.0));
+                if number.is_none() && first.get(at).is_some_and(|strength| *strength > 0.0) {
+                    let (name, id) = (variable.name(), facet.properties);
+                    let fact = format!("the law of friction of pair \"{pair}\" has no {name} in properties {id}");
+                    let remedy = format!("give {name} in the materials of the slave surface");
+                    return Err(Diagnostic::error("missing-constant", fact).remedy(remedy).into());
+                }
+                let number = number.unwrap_or(0.0);
+                if number < 0.0 {
+                    let (name, id) = (variable.name(), facet.properties);
+                    let fact = format!("{name} of properties {id} is {number}, it must be 0 or more");
+                    return Err(Diagnostic::error("negative-friction", fact).remedy("write a number from 0").into());
+                }
+                let (sum, count) = &mut sums[at];
+                *sum += number;
+                *count += 1;
+            }
+        }
+        let means = sums.iter().map(|(sum, count)| sum / (*count).max(1) as f64);
+        part.nodes.values.values_mut(variable, 0).iter_mut().zip(means).for_each(|(slot, mean)| *slot = mean);
+    }
+    Ok(())
+}
+
 /// The warning that properties of contact without friction give a number of the law.
 pub(crate) fn unread_coefficient(part: &ModelPart, interfaces: &[Interface], law: &FrictionLaw) -> Option<Diagnostic> {
-    let name = law.variable.name();
+    let name = law.variable().name();
     let mut facets = interfaces.iter().flat_map(|own| own.facets.iter().map(move |facet| (&own.key, facet.properties)));
     let number = |id: &usize| part.properties.get(id).and_then(|own| own.number(name)).filter(|own| *own > 0.0);
     let (pair, id, own) = facets.find_map(|(pair, id)| Some((pair, id, number(&id)?)))?;

@@ -13,7 +13,8 @@ use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 use crate::active_set::{Rules, find_tangents};
 use crate::flags::SLIP;
 use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex};
-use crate::law::{Augmentation, COULOMB, Margin, Multiplier, Nitsche, NormalVariation, SlipRule, StepParameters};
+use crate::law::{Augmentation, Margin, Multiplier, Nitsche, NormalVariation, SlipRule, StepParameters};
+use crate::laws::friction::COULOMB;
 use crate::mortar::tests::Noise;
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::{

@@ -1,16 +1,13 @@
 //! Laws of friction: how large the tangential traction of a node in contact may become.
 //!
-//! - Coulomb: |t| ≤ −μ p, with the normal pressure p < 0 in compression;
-//! - Tresca: |t| ≤ τ, whatever the pressure.
+//! A law is a function of the numbers that materials give at a node, and of how the node slides. The laws are in `laws/friction`, one a file.
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::{Nodes, Variable};
+use zelus_core::registered_kind;
 use zelus_core::registry;
 use zelus_core::scalar::Real;
-use zelus_core::{register, registered_kind};
-
-use crate::variables::{FRICTION_COEFFICIENT, TRESCA_FRICTION_THRESHOLD};
 
 /// Coefficients below this count as none.
 const NOTHING: f64 = f64::EPSILON;
@@ -44,26 +41,58 @@ registered_kind! {
     }
 }
 
+/// How a node in contact slides.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Sliding {
+    /// Normal pressure, 0 or negative (force per area).
+    pub pressure: f64,
+    /// Slip of the step over its time (length per time).
+    pub speed: f64,
+}
+
+/// Most numbers of a law.
+const MOST_NUMBERS: usize = 4;
+
 /// A law of friction.
 pub struct FrictionLaw {
-    /// The number that the law needs at a node, read from properties or nodes under this name.
-    pub variable: &'static Variable<f64>,
-    /// The bound for that number.
-    pub bound: fn(f64) -> Bound,
-    /// Whether `friction_coefficients` of the process stands in where properties say nothing.
+    /// Strengths at a node, from 0, read from properties or nodes under these names: friction doubles where all of them do, and without
+    /// the first there is none.
+    pub strengths: &'static [&'static Variable<f64>],
+    /// Further numbers, from 0, read in the same way.
+    pub constants: &'static [&'static Variable<f64>],
+    /// The bound by these numbers, strengths first, and by how the node slides: a tangent at its pressure.
+    pub bound: fn(&[f64], Sliding) -> Bound,
+    /// Whether the bound is more than a number times the pressure, or changes with the speed.
+    pub depends_on_sliding: bool,
+    /// Whether `friction_coefficients` of the process stands in for the first number where properties say nothing.
     pub by_coefficients: bool,
 }
 
 impl FrictionLaw {
-    /// The bound at a node whose number is written.
-    pub fn bound_at(&self, nodes: &Nodes, at: usize) -> Bound {
-        (self.bound)(nodes.values.values(self.variable, 0).get(at).copied().unwrap_or(0.0))
+    /// The first strength.
+    pub fn variable(&self) -> &'static Variable<f64> {
+        self.strengths[0]
+    }
+
+    /// All its numbers, strengths first.
+    pub fn variables(&self) -> impl Iterator<Item = &'static Variable<f64>> {
+        self.strengths.iter().chain(self.constants).copied()
+    }
+
+    /// The bound at a node whose numbers are written.
+    pub fn bound_at(&self, nodes: &Nodes, at: usize, sliding: Sliding) -> Bound {
+        let (mut numbers, mut count) = ([0.0; MOST_NUMBERS], 0);
+        for (number, variable) in numbers.iter_mut().zip(self.variables()) {
+            *number = nodes.values.values(variable, 0).get(at).copied().unwrap_or(0.0);
+            count += 1;
+        }
+        (self.bound)(&numbers[..count], sliding)
     }
 }
 
 impl std::fmt::Debug for FrictionLaw {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "friction law by {}", self.variable.name())
+        write!(f, "friction law by {}", self.variable().name())
     }
 }
 
@@ -73,19 +102,6 @@ impl PartialEq for FrictionLaw {
     }
 }
 
-/// The law that acts without a name.
-pub const COULOMB: FrictionLaw = FrictionLaw {
-    variable: &FRICTION_COEFFICIENT,
-    bound: |coefficient| Bound { coefficient, threshold: 0.0 },
-    by_coefficients: true,
-};
-
-const TRESCA: FrictionLaw = FrictionLaw {
-    variable: &TRESCA_FRICTION_THRESHOLD,
-    bound: |threshold| Bound { coefficient: 0.0, threshold },
-    by_coefficients: false,
-};
-
 /// The law of a `frictional_law`.
 ///
 /// # Errors
@@ -94,28 +110,9 @@ pub fn find_friction_law(name: &str) -> Result<&'static FrictionLaw, Diagnostic>
     registry::require::<FrictionLawEntry>(name).map(|entry| &entry.build)
 }
 
-register! { FrictionLawEntry "Coulomb",
-    about: "limit of the tangential traction: FRICTION_COEFFICIENT times the pressure",
-    source: "|t| ≤ −μ p; Coulomb (1785)",
-    build: COULOMB,
-}
-register! { FrictionLawEntry "Tresca",
-    about: "limit of the tangential traction: TRESCA_FRICTION_THRESHOLD, whatever the pressure",
-    source: "|t| ≤ τ_max; Tresca (1864)",
-    build: TRESCA,
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn bounds() {
-        assert_eq!((COULOMB.bound)(0.3).at(-10.0), 3.0);
-        assert_eq!((TRESCA.bound)(0.3).at(-10.0), 0.3);
-        assert!((COULOMB.bound)(0.0).is_smooth() && (TRESCA.bound)(0.0).is_smooth());
-        assert!(!(TRESCA.bound)(1e-3).is_smooth());
-    }
 
     #[test]
     fn unknown_laws_are_refused_with_a_suggestion() {

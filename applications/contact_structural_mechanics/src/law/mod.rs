@@ -27,7 +27,7 @@ mod step_parameters;
 
 pub use augmentation::Augmentation;
 pub use contact_law::{ContactLaw, NodeForces, NodeInputs, NodeLaw, SlipMeasure};
-pub use friction_law::{Bound, COULOMB, FrictionLaw, FrictionLawEntry, find_friction_law};
+pub use friction_law::{Bound, FrictionLaw, FrictionLawEntry, Sliding, find_friction_law};
 pub use mesh_tying::MeshTying;
 pub use multiplier::Multiplier;
 pub use nitsche::{Nitsche, NitscheVariant, NodeOfPoints, PointForces, SlaveFace};

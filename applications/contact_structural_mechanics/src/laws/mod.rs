@@ -1,11 +1,12 @@
 //! Contact laws, one formula a file, each registered with its formulations by their `mortar_type`.
 //!
-//! A file states a law's multiplier, its measure of slip, its force and rows at a slave node, the rule of its active set and its
+//! Laws of friction are in [`friction`]. A file states a law's multiplier, its measure of slip, its force and rows at a slave node, the rule of its active set and its
 //! names. Another crate adds one in the same way.
 
 pub mod alm_frictional;
 pub mod alm_frictionless;
 pub mod alm_frictionless_components;
+pub mod friction;
 mod mesh_tying_formulation;
 mod mpc;
 mod nitsche_formulation;

@@ -10,7 +10,7 @@ use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
 use zelus_core::{Error, Result};
 
-use super::friction_settings::friction_law;
+use super::friction_settings::{check_sliding, friction_law};
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{
     check_analysis, check_positive, check_search, segmentation, warn_of_revolution, without_computing_part,
@@ -22,7 +22,7 @@ use crate::interaction::ContactInteraction;
 use crate::interface::{GivenParameters, NodalNormals, check_parts};
 use crate::law::{Augmentation, Margin, Nitsche, NitscheVariant, NormalVariation};
 use crate::mortar::OperatorThreshold;
-use crate::pairs::{Formulation, find_formulation};
+use crate::pairs::{Formulation, Multiplier, find_formulation};
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
 use crate::settings::ContactSettings;
 use crate::solver::ContactSolverSettings;
@@ -174,9 +174,10 @@ fn interaction(
     problems.finish()?;
     let solver = ContactSolverSettings::of(&part.info);
     let named = named.expect("it is known");
+    let part_is_explicit = part.info.solver.explicit;
     let formulation = match named.by_node {
         Some(by_node) if !whole.parameters.penalty_of_weighted_gaps => {
-            if part.info.solver.explicit {
+            if part_is_explicit {
                 by_node.explicit
             } else {
                 by_node.implicit
@@ -209,6 +210,10 @@ fn interaction(
     };
     let augmentation =
         whole.augmentation.unwrap_or(if formulation.weighted_gaps { Augmentation::Pair } else { Augmentation::Node });
+    if formulation.frictional() {
+        let by_node = part_is_explicit || matches!(formulation.multiplier, Multiplier::Vector(_));
+        check_sliding(settings, friction.law, by_node && augmentation == Augmentation::Node)?;
+    }
     if formulations.name == AUGMENTED.name && augmentation == Augmentation::Node {
         warn_of_penalties(&whole.parameters, request);
     }

@@ -7,6 +7,21 @@ use zelus_core::processes::ProcessRequest;
 
 use crate::law::{FrictionLaw, find_friction_law};
 
+/// Refuses a law that depends on how a node slides where a formulation does not decide node by node.
+///
+/// # Errors
+/// Such a law without `by_node`.
+pub(super) fn check_sliding(settings: &Settings, law: &FrictionLaw, by_node: bool) -> Result<()> {
+    if by_node || !law.depends_on_sliding {
+        return Ok(());
+    }
+    let fact =
+        format!("\"frictional_law\": \"{}\" needs a traction of each slave node", settings.get_str("frictional_law")?);
+    let remedy =
+        "take the augmented Lagrangian or the penalty method with \"augmentation\": \"node\", or Coulomb's law";
+    Err(settings.error("frictional_law", "friction-of-nodes", fact).remedy(remedy).into())
+}
+
 /// The law of friction of the settings; warns of numbers that nothing will read.
 ///
 /// # Errors

@@ -8,7 +8,7 @@ use zelus_core::parameters::Interval;
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
 
-use super::friction_settings::friction_law;
+use super::friction_settings::{check_sliding, friction_law};
 use super::interaction_process::InteractionProcess;
 use super::interface_settings::{check_analysis, check_search, check_slaves, segmentation, without_computing_part};
 use crate::friction::FrictionSettings;
@@ -50,6 +50,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let info = &part.info;
     let (solver, update_each_iteration) = (ContactSolverSettings::of(info), updates_each_iteration(info));
     let law = friction_law(&settings, kind == MpcKind::Frictional, request)?;
+    check_sliding(&settings, law, false)?;
     let chosen = MpcSettings {
         parts: whole.contact_model_part,
         slaves: whole.assume_master_slave,

@@ -20,7 +20,7 @@ use zelus_structural_mechanics::variables::NORMAL;
 use super::following_multipliers;
 use super::slave_state::{Accepted, SlaveKinematics, SlaveLawState, SlaveParameters, SlaveState};
 use crate::interface::{NormalPatches, Patches, SlaveIndex};
-use crate::law::{FrictionLaw, Multiplier, NodeState};
+use crate::law::{FrictionLaw, Multiplier, NodeState, Sliding};
 use crate::variables::{
     AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, DYNAMIC_FACTOR, INITIAL_PENALTY,
     KEPT_CONTACT_PRESSURE, MULTIPLIER_WEIGHT, NODAL_AREA, NORMAL_GAP, TANGENT_ETA, TANGENT_XI, WEIGHTED_GAP,
@@ -264,10 +264,10 @@ impl SlaveStates {
         }
     }
 
-    /// Takes the bounds of friction from the numbers of a law at the nodes.
+    /// Takes the bounds of friction from the numbers of a law at the nodes, of nodes at rest and without pressure.
     pub fn read_friction(&mut self, nodes: &Nodes, law: &FrictionLaw) {
         for (&node, state) in self.table.nodes.iter().zip(&mut self.states) {
-            state.parameters.friction = law.bound_at(nodes, node as usize);
+            state.parameters.friction = law.bound_at(nodes, node as usize, Sliding::default());
         }
     }
 

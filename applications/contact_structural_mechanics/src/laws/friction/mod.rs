@@ -1,0 +1,11 @@
+//! Laws of friction, one a file.
+
+mod coulomb;
+mod orowan;
+mod static_kinetic;
+mod tresca;
+
+pub use coulomb::COULOMB;
+
+#[cfg(test)]
+mod tests;
