@@ -32,6 +32,7 @@ const GROUPS: [(&str, &[&str]); 5] = [
         &[
             "contact_formulation",
             "friction_law",
+            "overclosure_law",
             "tying_formulation",
             "penalty_adaptation",
             "contact_conductance",

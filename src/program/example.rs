@@ -48,6 +48,7 @@ pub(super) fn example(kind: &str, entry: &Entry) -> Result<Option<String>> {
             at("solver_settings.solving_strategy_settings", json!({ "type": name, "advanced_settings": settings }))
         }
         "contact_conductance" => at("Parameters.conductance", json!([settings])),
+        "overclosure_law" => at("Parameters.pressure_overclosure", settings),
         "wear_law" => at("Parameters.wear_of_slave", json!([settings])),
         "penalty_adaptation" => {
             at("Parameters.advance_ALM_parameters", json!({ "adapt_penalty": true, "adaptation_rule": name }))

@@ -36,6 +36,7 @@ mod slivers;
 #[path = "../support/specimen.rs"]
 #[allow(dead_code, reason = "each test uses its part")]
 mod specimen;
+mod soft_contact;
 mod spring_and_wall;
 #[path = "../support/stacks.rs"]
 mod stacks;

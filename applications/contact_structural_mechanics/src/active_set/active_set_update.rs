@@ -64,7 +64,7 @@ impl ActiveSetUpdate {
         messages: &mut Vec<Diagnostic>,
     ) -> SetChange {
         let rules = Rules::of(setup);
-        rules.follow_sliding(part, states);
+        rules.follow(part, states, setup);
         let (mut decisions, before) = rules.decide(part, states, &mut self.released);
         if !setup.by_points() {
             self.cycles.restrict(&mut decisions, &before);
@@ -79,7 +79,7 @@ impl ActiveSetUpdate {
     /// Finds pressures and tractions in the present state, and holds the set.
     pub(crate) fn find_tractions(&self, part: &ModelPart, states: &mut SlaveStates, setup: &Setup) {
         let rules = Rules::of(setup);
-        rules.follow_sliding(part, states);
+        rules.follow(part, states, setup);
         let (decisions, _) = rules.decide(part, states, &mut self.released.clone());
         rules.press(part, states, &decisions);
     }

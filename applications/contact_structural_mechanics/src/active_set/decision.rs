@@ -12,7 +12,7 @@ use crate::friction::slip;
 use crate::interface::SlaveIndex;
 use crate::law::constrained_multiplier::along_free_tangents;
 use crate::law::rules::{self, Decision, SlaveNumbers};
-use crate::law::{Augmentation, MultiplierConstraint, NodeState, Sliding, StepParameters};
+use crate::law::{Augmentation, MultiplierConstraint, NodeState, OverclosureLaw, Sliding, SoftTangent, StepParameters};
 use crate::mortar::{tangent, tangential};
 use crate::pairs::{Formulation, Multiplier};
 use crate::settings::Setup;
@@ -36,8 +36,16 @@ impl<'a> Rules<'a> {
         Self { formulation: setup.settings.formulation, parameters: &setup.parameters, tolerances: setup.tolerances }
     }
 
+    /// Takes what laws of friction and of soft contact say in the present state.
+    pub(super) fn follow(self, part: &ModelPart, states: &mut SlaveStates, setup: &Setup) {
+        self.follow_sliding(part, states);
+        if let Some(law) = &setup.settings.overclosure {
+            self.soften(part, states, law.as_ref());
+        }
+    }
+
     /// Takes the bounds of a law of friction that depends on the sliding from the present state of every slave node.
-    pub(crate) fn follow_sliding(self, part: &ModelPart, states: &mut SlaveStates) {
+    fn follow_sliding(self, part: &ModelPart, states: &mut SlaveStates) {
         let law = self.parameters.friction_law;
         if !law.depends_on_sliding || !self.formulation.frictional() {
             return;
@@ -51,6 +59,25 @@ impl<'a> Rules<'a> {
         let bounds: Vec<_> = states.slaves().iter().map(|&slave| bound(slave)).collect();
         let mut bounds = bounds.into_iter();
         states.for_each(|_, state| state.parameters.friction = bounds.next().expect("one a slave node"));
+    }
+
+    /// Takes the tangent of a law of soft contact at the pressure of every slave node.
+    fn soften(self, part: &ModelPart, states: &mut SlaveStates, law: &dyn OverclosureLaw) {
+        let pressure = |slave: SlaveIndex| {
+            let normal = states[slave].kinematics.normal;
+            let whole = match self.formulation.multiplier {
+                Multiplier::Vector(_) => {
+                    dot(self.formulation.multiplier.value(&part.slave_nodes, states.owner(slave)), normal)
+                }
+                _ => self.formulation.multiplier.value(&part.slave_nodes, states.owner(slave))[0],
+            };
+            if states[slave].law.active { (-self.parameters.scale_factor * whole).max(0.0) } else { 0.0 }
+        };
+        let pressures: Vec<f64> = states.slaves().iter().map(|&slave| pressure(slave)).collect();
+        let mut pressures = pressures.into_iter();
+        states.for_each(|_, state| {
+            state.parameters.soft = pressures.next().map(|pressure| SoftTangent::of(law, pressure));
+        });
     }
 
     /// The decision for every slave node, and the states the nodes are in.
@@ -234,12 +261,13 @@ impl<'a> Rules<'a> {
             ),
             _ => whole,
         };
+        let begin = state.parameters.soft.map_or(0.0, |soft| soft.begin);
         SlaveNumbers {
             state: state.contact(),
             normal,
             multiplier,
             solved: formulation.multiplier.is_unknown(),
-            gap: tolerances.length_of(state.counted_gap(parameters) * by_area + kept),
+            gap: tolerances.length_of(state.counted_gap(parameters) * by_area + kept + begin),
             slip,
             trial: state.law.trial,
             tangent: state.law.tangent,

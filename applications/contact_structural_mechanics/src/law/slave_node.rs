@@ -12,7 +12,8 @@ pub struct SlaveNode {
     pub penalty: f64,
     /// 1/ε of regularised formulations, penetration by pressure; 0 of all others.
     pub compliance: f64,
-    /// Uzawa pressure p° of regularised formulations, compression negative; 0 without an outer loop.
+    /// Pressure p° of regularised formulations, compression negative: that of Uzawa's iteration, or at which the tangent of soft contact has
+    /// no depth; else 0.
     pub uzawa_pressure: f64,
     /// c > 0: stiffness by length, for rows that state tractions beside others that state gaps and slips.
     pub stiffness: f64,

@@ -57,9 +57,10 @@ impl AlmFrictional {
         let traction = scale(inputs.multiplier, T::constant(self.scale_factor));
         let give = inputs.area * node.compliance;
         let along = sub(tangential(traction, inputs.normal), inputs.history);
+        let elastic = inputs.area * (self.tangent_factor * node.penalty).recip();
         (
-            inputs.gap - dot(traction, inputs.normal) * give,
-            sub(inputs.slip, scale(along, give * self.tangent_factor.recip())),
+            inputs.gap - (dot(traction, inputs.normal) - node.uzawa_pressure) * give,
+            sub(inputs.slip, scale(along, elastic)),
         )
     }
 }

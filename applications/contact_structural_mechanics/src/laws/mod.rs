@@ -1,6 +1,6 @@
 //! Contact laws, one formula a file, each registered with its formulations by their `mortar_type`.
 //!
-//! Laws of friction are in [`friction`]. A file states a law's multiplier, its measure of slip, its force and rows at a slave node, the rule of its active set and its
+//! Laws of friction are in [`friction`], those of soft contact in `overclosure`. A file states a law's multiplier, its measure of slip, its force and rows at a slave node, the rule of its active set and its
 //! names. Another crate adds one in the same way.
 
 pub mod alm_frictional;
@@ -10,6 +10,7 @@ pub mod friction;
 mod mesh_tying_formulation;
 mod mpc;
 mod nitsche_formulation;
+mod overclosure;
 pub mod penalty_by_node;
 pub mod penalty_frictional;
 pub mod penalty_frictionless;

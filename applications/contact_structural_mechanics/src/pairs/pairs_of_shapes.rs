@@ -218,8 +218,12 @@ impl PairsOfShapes {
             SlaveNode {
                 state: node.contact(),
                 penalty: node.parameters.penalty,
-                compliance: if self.parameters.regularised { node.parameters.penalty.recip() } else { 0.0 },
-                uzawa_pressure: node.law.uzawa_pressure,
+                compliance: match node.parameters.soft {
+                    Some(soft) => soft.compliance,
+                    None if self.parameters.regularised => node.parameters.penalty.recip(),
+                    None => 0.0,
+                },
+                uzawa_pressure: node.parameters.soft.map_or(node.law.uzawa_pressure, |soft| soft.pressure_at_rest),
                 stiffness,
                 area: if by_pair { area } else { share },
                 dynamic_factor: node.parameters.dynamic_factor,

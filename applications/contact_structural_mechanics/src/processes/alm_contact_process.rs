@@ -1,6 +1,7 @@
 //! Contact by the augmented Lagrangian: reads the settings and puts the interaction into the model part.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use serde::Deserialize;
 use zelus_core::diagnostics::{Diagnostic, Report};
@@ -8,6 +9,7 @@ use zelus_core::model::ModelPart;
 use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
+use zelus_core::registry::named;
 use zelus_core::{Error, Result};
 
 use super::friction_settings::{check_sliding, friction_law};
@@ -20,7 +22,7 @@ use crate::compatibility::{FormulationUse, Refusal, refusal};
 use crate::friction::FrictionSettings;
 use crate::interaction::ContactInteraction;
 use crate::interface::{GivenParameters, NodalNormals, check_parts};
-use crate::law::{Augmentation, Margin, Nitsche, NitscheVariant, NormalVariation};
+use crate::law::{Augmentation, Margin, Nitsche, NitscheVariant, NormalVariation, OverclosureLaw, OverclosureLawEntry};
 use crate::mortar::OperatorThreshold;
 use crate::pairs::{Formulation, Multiplier, find_formulation};
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
@@ -262,6 +264,7 @@ fn interaction(
         },
         operator_threshold: keys.as_ref().map_or_else(OperatorThreshold::default, FrictionKeys::threshold),
         friction,
+        overclosure: overclosure(settings, formulation)?,
         adaptation: AdaptationSettings {
             rule: whole.parameters.adapt_penalty.then_some(rule),
             min_gap_factor: whole.parameters.min_gap_factor.unwrap_or(0.0),
@@ -282,6 +285,22 @@ fn interaction(
     let interaction = ContactInteraction::new(chosen, part)?;
     warning.into_iter().for_each(|warning| request.report.push(warning));
     Ok((whole.model_part_name, interaction))
+}
+
+/// The law of soft contact of the settings.
+///
+/// # Errors
+/// A law where contact has no multiplier that it softens.
+fn overclosure(settings: &Settings, formulation: &Formulation) -> Result<Option<Arc<dyn OverclosureLaw>>> {
+    let key = "pressure_overclosure";
+    let Some(node) = settings.node().get(key).filter(|node| node.get("law").is_some()) else { return Ok(None) };
+    let (entry, own) = named::<OverclosureLawEntry>(node, "law")?;
+    if !formulation.regularised {
+        let fact = "\"pressure_overclosure\" needs steps with equilibrium and penalties by node";
+        let remedy = "take it out of explicit analyses, and set \"penalty_of_weighted_gaps\" to false";
+        return Err(settings.error(key, "soft-contact", fact).remedy(remedy).into());
+    }
+    Ok(Some(Arc::from((entry.build)(&own)?)))
 }
 
 /// Warns of penalties of the deck where the augmentation of nodes takes none, and contact is the same whatever they are.

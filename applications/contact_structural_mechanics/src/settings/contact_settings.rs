@@ -1,13 +1,14 @@
 //! Settings of contact, read by the processes and used by the interaction.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use zelus_core::parameters::Interval;
 
 use crate::adaptation::{AdaptationSettings, ExplicitPenalty, UzawaSettings};
 use crate::friction::FrictionSettings;
 use crate::interface::{GivenParameters, NodalNormals};
-use crate::law::{Augmentation, Nitsche, NormalVariation};
+use crate::law::{Augmentation, Nitsche, NormalVariation, OverclosureLaw};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::Formulation;
 use crate::search::SearchSettings;
@@ -62,6 +63,8 @@ pub struct ContactSettings {
     pub operator_threshold: OperatorThreshold,
     /// Coefficients and the rules of stick and slip.
     pub friction: FrictionSettings,
+    /// The law of soft contact, in place of the penalty.
+    pub overclosure: Option<Arc<dyn OverclosureLaw>>,
     /// Parameters that are adapted in every iteration.
     pub adaptation: AdaptationSettings,
     /// Whether normals lie in planes of symmetry, and multipliers that supports leave without equation are dropped.

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::law::{Bound, DirectionRotation, MultiplierConstraints, NodeState, StepParameters};
+use crate::law::{Bound, DirectionRotation, MultiplierConstraints, NodeState, SoftTangent, StepParameters};
 
 /// One slave node.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -80,6 +80,8 @@ pub struct SlaveParameters {
     pub dynamic_factor: f64,
     /// Limit of the tangential traction.
     pub friction: Bound,
+    /// Soft contact at its present pressure, where the deck has a law of it.
+    pub soft: Option<SoftTangent>,
 }
 
 /// The part of a slave node that is compared with its last accepted state.
