@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use zelus::contact_structural_mechanics::flags::SLIP;
 use zelus::contact_structural_mechanics::law::{
-    Augmentation, COULOMB, Margin, Nitsche, NormalVariation, SlipRule, StepParameters,
+    Augmentation, Margin, Nitsche, NormalVariation, SlipRule, StepParameters,
 };
+use zelus::contact_structural_mechanics::laws::friction::COULOMB;
 use zelus::contact_structural_mechanics::mortar::{
     IntegrationOrder, MOST_NODES, OperatorThreshold, SegmentationSettings,
 };
