@@ -246,7 +246,9 @@ impl Specimen {
 
 /// Whether strains are those of linear theory, by the name that says so.
 pub fn is_linear(entry: &EntityKind) -> bool {
-    ["SmallDisplacement", "TrussLinear", "LinearTruss"].iter().any(|word| entry.name.contains(word))
+    ["SmallDisplacement", "TrussLinear", "LinearTruss", "LinearAxialSpring"]
+        .iter()
+        .any(|word| entry.name.contains(word))
 }
 
 /// Whether the plane turns about the y axis.

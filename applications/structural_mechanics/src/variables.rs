@@ -32,6 +32,7 @@ register_variable! {
     pub VOLUMETRIC_STRAIN: f64 = "Change of volume per volume, an unknown of the nodes of mixed elements.";
     pub NODAL_MASS: f64 = "Mass at a node; in explicit integration all of it, lumped (mass).";
     pub NODAL_DISPLACEMENT_STIFFNESS: [f64; 3] = "Stiffness of a spring in each direction (force per length).";
+    pub AXIAL_STIFFNESS: f64 = "Stiffness of a spring along its line (force per length).";
     pub NODAL_DAMPING_RATIO: [f64; 3] = "Viscosity of a damper in each direction (force per velocity).";
     pub NODAL_INITIAL_DISPLACEMENT: [f64; 3] = "Displacement at which a spring to the ground is at rest (length).";
     pub NODAL_ROTATIONAL_STIFFNESS: [f64; 3] = "Stiffness against rotations; refused, nodes have no rotations.";

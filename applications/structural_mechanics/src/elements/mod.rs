@@ -34,6 +34,7 @@
 //! ```
 
 mod absent;
+mod axial_spring;
 mod axisymmetric;
 mod band;
 mod formulation;

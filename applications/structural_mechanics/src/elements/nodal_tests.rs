@@ -85,3 +85,27 @@ fn bars_pull_along_their_axis() {
         assert!(k.iter().zip(&differences).all(|(a, b)| near(*a, *b, 1e-9)), "{name}");
     }
 }
+
+/// A spring of length 5 that is stretched to 13 across its line; the linear one takes the part along its initial line.
+#[test]
+fn springs_along_their_line_pull_by_their_stretch() {
+    let x = [[0.0; 3], [3.0, 4.0, 0.0]];
+    for (space, linear) in [(2, false), (3, false), (2, true), (3, true)] {
+        let name = format!("{}AxialSpringElement{space}D2N", if linear { "Linear" } else { "" });
+        let mut single = Single::new(EntityRole::Element, &name, None, &[], &x);
+        single.part.elements.data.values_mut(&AXIAL_STIFFNESS, 0)[0] = 2.0;
+        single.initialize();
+        assert_eq!(single.block().tangent(), if linear { Tangent::Constant } else { Tangent::Symmetric });
+        single.displace(&[[0.0; 3], [2.0, 8.0, 0.0]]);
+        // ANALYTIC: l = |(5, 12)| = 13, f = 2 (13 − 5) (5, 12)/13; linear: f = 2 ((2, 8)·(0.6, 0.8)) (0.6, 0.8)
+        let (size, [along, up]) = if linear { (15.2, [0.6, 0.8]) } else { (16.0, [5.0 / 13.0, 12.0 / 13.0]) };
+        let rhs = single.residual();
+        assert!(near(rhs[0], size * along, 1e-14) && near(rhs[1], size * up, 1e-14), "{name}: {rhs:?}");
+        assert!(rhs[space] == -rhs[0] && rhs[space + 1] == -rhs[1], "{name}");
+        let u = [[0.1, -0.2, 0.0], [1.2, 0.7, 0.0]];
+        single.displace(&u);
+        let (k, _) = single.system();
+        let differences = single.difference_tangent(&u, space, true);
+        assert!(k.iter().zip(&differences).all(|(a, b)| near(*a, *b, 1e-8)), "{name}");
+    }
+}
