@@ -75,6 +75,12 @@ macro_rules! entity_entry {
                 self
             }
 
+            /// Whether its loads are moments: in the plane about the axis across it.
+            pub const fn turns(mut self, turns: bool) -> Self {
+                self.kind.turns = turns;
+                self
+            }
+
             /// Variables with history that its nodes have: name and number of components.
             pub const fn nodal(mut self, nodal: &'static [(&'static str, usize)]) -> Self {
                 self.kind.nodal = nodal;

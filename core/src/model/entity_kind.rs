@@ -47,12 +47,14 @@ pub struct EntityKind {
     pub nodal: &'static [(&'static str, usize)],
     /// Variables of its data by which it loads the model; `None` where that is not stated.
     pub loads: Option<&'static [&'static str]>,
+    /// Whether its loads are moments: in the plane about the axis across it.
+    pub turns: bool,
 }
 
 impl EntityKind {
     /// A kind on no cell.
     pub const fn new(role: EntityRole, entry: Entry) -> Self {
-        let (of_revolution, small_displacement) = (false, false);
+        let (of_revolution, small_displacement, turns) = (false, false, false);
         Self {
             entry,
             role,
@@ -63,6 +65,7 @@ impl EntityKind {
             body_load: None,
             nodal: &[],
             loads: None,
+            turns,
         }
     }
 

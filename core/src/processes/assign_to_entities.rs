@@ -190,7 +190,14 @@ impl AssignToEntities {
             let fact = format!("no {word} of {path} takes {names_in_words}; the first is a {kind}");
             return Some(WithoutEffect::whole(fact));
         }
-        let out_of_plane = |c: &EntityComponent| c.variable.component == Some(2) && part.info.domain_size == 2;
+        // moments of the plane act about the axis across it
+        let turns = |name: &str| {
+            let kinds = selected.iter().map(|&at| table.kinds[at as usize]);
+            kinds.into_iter().any(|kind| kind.turns && kind.loads.is_some_and(|own| own.contains(&name)))
+        };
+        let is_planar = part.info.domain_size == 2;
+        let out_of_plane =
+            |c: &EntityComponent| c.variable.component == Some(2) && is_planar && !turns(c.variable.column);
         let acts = self.components.iter().filter(|c| !c.value.is_zero());
         let (lost, all) = of_components(acts, out_of_plane);
         WithoutEffect::in_the_plane(&names_in_words, path, lost, all)
