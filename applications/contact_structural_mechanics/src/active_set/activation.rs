@@ -14,6 +14,8 @@ use crate::variables::NODAL_H;
 const SIMPLE_REACH: f64 = 2e-3;
 /// Motion of a body without restraint in an iteration of contact stabilisation, in mesh sizes.
 const STABILIZATION: f64 = 0.25;
+/// Gap, in mesh sizes, of a node that touches its master.
+const TOUCHING: f64 = 1e-6;
 /// Gap of a node that nothing faces.
 const FAR: f64 = 1e12;
 
@@ -66,6 +68,8 @@ pub(crate) fn start(nodes: &Nodes, states: &mut SlaveStates, start: ActivationCr
         };
         state.law.active = near && !state.kinematics.isolated;
         state.kinematics.start_gap = if near { gap } else { 0.0 };
+        let size = sizes[mesh_nodes[slave.place()] as usize];
+        state.law.joined |= state.law.active && gap <= TOUCHING * size;
         if state.law.active {
             let slides = rule == SlipRule::Pure || state.parameters.friction.is_smooth();
             state.law.slides = Some(slides || state.law.slides == Some(true));

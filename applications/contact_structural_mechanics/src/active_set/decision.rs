@@ -273,6 +273,7 @@ impl<'a> Rules<'a> {
             tangent: state.law.tangent,
             stiffness,
             driven,
+            stays: state.parameters.no_separation && state.law.joined,
             friction: state.parameters.friction,
             scale_factor: parameters.scale_factor,
             tangent_factor: parameters.tangent_factor,

@@ -183,6 +183,7 @@ impl Interaction for ContactInteraction {
         self.free_bodies = FreeBodies::default();
         self.loops.begin_step(part, &mut self.contact);
         self.contact.states.read_friction(&part.nodes, self.contact.setup.settings.friction.law);
+        self.contact.join_interfaces(part)?;
         if self.acting {
             let settings = &self.contact.setup.settings;
             if let Some(explicit) = settings.explicit {

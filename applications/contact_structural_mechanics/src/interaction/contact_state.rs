@@ -308,6 +308,29 @@ impl ContactState {
         self.states.begin_step();
     }
 
+    /// Marks the slave nodes of interfaces whose contact does not open again.
+    ///
+    /// # Errors
+    /// Friction there: its bound under tension is none.
+    pub(super) fn join_interfaces(&mut self, part: &ModelPart) -> Result<()> {
+        if self.setup.settings.no_separation.is_empty() {
+            return Ok(());
+        }
+        for (interface, slaves) in self.pairing.interfaces.iter().zip(self.pairing.slaves_by_interface()) {
+            if !self.setup.settings.no_separation.contains(&interface.key) {
+                continue;
+            }
+            if let Some(slave) = self.states.join(&slaves) {
+                let node = part.nodes.ids[self.states.mesh_node(slave) as usize];
+                let fact =
+                    format!("pair \"{}\" has \"no_separation\" and friction, e.g. at node {node}", interface.key);
+                let remedy = "take the friction of the pair out, or tie its surfaces by mesh_tying_process";
+                return Err(Diagnostic::error("no-separation", fact).remedy(remedy).into());
+            }
+        }
+        Ok(())
+    }
+
     /// Searches where that is due, and decides which nodes begin the step in contact.
     ///
     /// # Errors

@@ -90,6 +90,8 @@ pub struct SlaveNumbers {
     pub stiffness: f64,
     /// Whether supports move both sides: such a node cannot stick, however small its slip.
     pub driven: bool,
+    /// Whether contact of the node does not open again, whatever its pressure.
+    pub stays: bool,
     /// Limit of the tangential traction.
     pub friction: Bound,
     /// Scale factor k.
@@ -121,7 +123,8 @@ impl SlaveNumbers {
     }
 
     fn presses(&self, pressure: f64) -> bool {
-        self.tolerances.exceeds(-pressure, 0.0, self.state.is_active())
+        let active = self.state.is_active();
+        (self.stays && active) || self.tolerances.exceeds(-pressure, 0.0, active)
     }
 
     /// Whether supports move the sides along each other.
@@ -343,6 +346,7 @@ mod tests {
             tangent: [1.0, 0.0, 0.0],
             stiffness: 2.0,
             driven: false,
+            stays: false,
             friction: Bound { coefficient: 0.3, threshold: 0.0 },
             scale_factor: 4.0,
             tangent_factor: 0.5,
@@ -476,6 +480,23 @@ mod tests {
             [0.6, 0.2, -0.2, -6.0].map(slid),
             [NodeState::Slip, NodeState::Stick, NodeState::Stick, NodeState::Stick]
         );
+    }
+
+    #[test]
+    fn contact_without_separation_carries_tension() {
+        let pulled = |state| SlaveNumbers {
+            stays: true,
+            solved: true,
+            gap: 5.0,
+            friction: Bound::default(),
+            ..node(state, [0.0, 0.0, 1.0])
+        };
+        for decide in [|own: &SlaveNumbers| frictionless(own), |own: &SlaveNumbers| alm_frictional(own, COULOMB)] {
+            let decision = decide(&pulled(NodeState::Slip));
+            assert_eq!((decision.state, decision.changed, decision.pressure), (NodeState::Slip, false, 4.0));
+            assert_eq!(decision.traction, [0.0; 3]);
+            assert_eq!(decide(&pulled(NodeState::Inactive)).state, NodeState::Inactive);
+        }
     }
 
     #[test]

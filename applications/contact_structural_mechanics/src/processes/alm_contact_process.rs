@@ -72,6 +72,9 @@ struct ContactKeys {
     model_part_name: String,
     contact_model_part: BTreeMap<String, Vec<String>>,
     assume_master_slave: BTreeMap<String, Vec<String>>,
+    /// Only the process of the augmented Lagrangian has it.
+    #[serde(default)]
+    no_separation: Vec<String>,
     contact_type: String,
     normal_variation: NormalVariation,
     nodal_normals: NodalNormals,
@@ -172,6 +175,7 @@ fn interaction(
     let known = check_parts(part, &whole.contact_model_part, &whole.assume_master_slave);
     problems.absorb(known.map_err(|error| error.at(&settings.place())));
     problems.absorb(check_search(settings));
+    problems.absorb(check_no_separation(settings, &whole));
     problems.absorb(segmentation(settings));
     problems.finish()?;
     let solver = ContactSolverSettings::of(&part.info);
@@ -226,6 +230,7 @@ fn interaction(
     let chosen = ContactSettings {
         parts: whole.contact_model_part,
         slaves: whole.assume_master_slave,
+        no_separation: whole.no_separation,
         formulation,
         interval: Interval::from_node(settings.get("interval")?)?,
         normal_variation,
@@ -301,6 +306,19 @@ fn overclosure(settings: &Settings, formulation: &Formulation) -> Result<Option<
         return Err(settings.error(key, "soft-contact", fact).remedy(remedy).into());
     }
     Ok(Some(Arc::from((entry.build)(&own)?)))
+}
+
+/// Pairs that do not separate are pairs of the process.
+///
+/// # Errors
+/// A pair that the process does not have.
+fn check_no_separation(settings: &Settings, keys: &ContactKeys) -> Result<()> {
+    let missing = keys.no_separation.iter().find(|key| !keys.contact_model_part.contains_key(*key));
+    let Some(missing) = missing else { return Ok(()) };
+    let fact = format!("\"no_separation\" names the pair {missing:?}, which \"contact_model_part\" does not have");
+    let known: Vec<&str> = keys.contact_model_part.keys().map(String::as_str).collect();
+    let remedy = format!("pairs: {}", known.join(", "));
+    Err(settings.error("no_separation", "invalid-value", fact).remedy(remedy).into())
 }
 
 /// Warns of penalties of the deck where the augmentation of nodes takes none, and contact is the same whatever they are.

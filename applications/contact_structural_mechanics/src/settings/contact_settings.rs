@@ -21,6 +21,8 @@ pub struct ContactSettings {
     pub parts: BTreeMap<String, Vec<String>>,
     /// Parts on the slave side by key.
     pub slaves: BTreeMap<String, Vec<String>>,
+    /// Keys of interfaces whose contact does not open again.
+    pub no_separation: Vec<String>,
     /// The formulation of conditions.
     pub formulation: &'static Formulation,
     /// Times in which contact acts.

@@ -45,6 +45,8 @@ pub struct SlaveKinematics {
 pub struct SlaveLawState {
     /// Whether it is in contact.
     pub active: bool,
+    /// Whether it was in contact at the end of the last accepted step, or touched its master when the step began.
+    pub joined: bool,
     /// Whether it slides, while it is in contact or was last; `None` before.
     pub slides: Option<bool>,
     /// Tangential traction before the law of friction limits it; where points decide, their mean traction (force per area).
@@ -82,6 +84,8 @@ pub struct SlaveParameters {
     pub friction: Bound,
     /// Soft contact at its present pressure, where the deck has a law of it.
     pub soft: Option<SoftTangent>,
+    /// Whether contact does not open again (`no_separation`).
+    pub no_separation: bool,
 }
 
 /// The part of a slave node that is compared with its last accepted state.

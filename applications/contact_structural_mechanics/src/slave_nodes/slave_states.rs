@@ -242,6 +242,7 @@ impl SlaveStates {
         for state in &mut self.states {
             state.last =
                 Accepted { weighted_gap: state.kinematics.weighted_gap, history_traction: state.law.history_traction };
+            state.law.joined = state.law.active;
         }
     }
 
@@ -269,6 +270,14 @@ impl SlaveStates {
         for (&node, state) in self.table.nodes.iter().zip(&mut self.states) {
             state.parameters.friction = law.bound_at(nodes, node as usize, Sliding::default());
         }
+    }
+
+    /// Marks slave nodes whose contact does not open again; the first of them that has friction, which tension leaves no bound.
+    pub fn join(&mut self, slaves: &[SlaveIndex]) -> Option<SlaveIndex> {
+        for &slave in slaves {
+            self[slave].parameters.no_separation = true;
+        }
+        slaves.iter().copied().find(|&slave| !self[slave].parameters.friction.is_smooth())
     }
 
     /// Writes flags and columns of the mesh nodes: those of their slave node, or the sum over several.
