@@ -9,7 +9,7 @@ use crate::support::{said, zelus};
 use crate::thread_ranks::on_threads;
 use serde_json::{Value, json};
 use tempfile::TempDir;
-use zelus::contact_structural_mechanics::variables::CONTACT_PRESSURE;
+use zelus::contact_structural_mechanics::variables::{CONTACT_PRESSURE, CONTACT_STATUS};
 use zelus::core::communication::Ranks;
 use zelus::wear::variables::WEAR_DEPTH;
 use zelus::{RunOptions, Silent, Simulation};
@@ -123,7 +123,7 @@ impl Sliding {
 struct Worn {
     /// Depth by node id, of nodes that this rank has.
     depths: BTreeMap<usize, f64>,
-    /// Pressure of contact in the end.
+    /// Pressure of contact on slave nodes in the end.
     pressures: BTreeMap<usize, f64>,
     /// Places of the unloaded bodies at the start and in the end.
     places: BTreeMap<usize, [Vec3; 2]>,
@@ -147,7 +147,9 @@ fn worn(folder: &Path, ranks: Ranks) -> Worn {
     simulation.run(&mut Silent).expect("it converges");
     let nodes = &simulation.part().expect("a part").nodes;
     let of_nodes = |variable| nodes.ids.iter().copied().zip(nodes.values.values(variable, 0).iter().copied()).collect();
-    let (depths, pressures) = (of_nodes(&WEAR_DEPTH), of_nodes(&CONTACT_PRESSURE));
+    let status: BTreeMap<usize, f64> = of_nodes(&CONTACT_STATUS);
+    let (depths, mut pressures) = (of_nodes(&WEAR_DEPTH), of_nodes(&CONTACT_PRESSURE));
+    pressures.retain(|id, _| status[id] >= 0.0);
     let end = places(&simulation);
     let number = |record: &zelus::core::strategies::StepRecord, name: &str| {
         record.interactions.iter().find(|(own, _)| own == name).unwrap_or_else(|| panic!("no {name}")).1

@@ -36,8 +36,8 @@ register_variable! {
     pub TANGENT_ETA: [f64; 3] = "Unit tangent of the slave surface across the direction of sliding: TANGENT_XI, TANGENT_ETA and the normal are right-handed.";
     pub AUGMENTED_NORMAL_CONTACT_PRESSURE: f64 = "Normal traction of a slave node, negative in contact: scale factor times normal multiplier, plus penalty times weighted gap where pairs augment; of penalty methods their traction.";
     pub AUGMENTED_TANGENT_CONTACT_PRESSURE: [f64; 3] = "Augmented tangential traction that friction limits.";
-    pub CONTACT_PRESSURE: f64 = "Force per area by which contact presses on a slave node, positive in compression; 0 where it is open.";
-    pub CONTACT_TRACTION: [f64; 3] = "Force per area of contact on the slave, along the normal and tangential.";
+    pub CONTACT_PRESSURE: f64 = "Force per area by which contact presses on a node, positive in compression; 0 where it is open. At master nodes their share of the pressure of the slave, over the area.";
+    pub CONTACT_TRACTION: [f64; 3] = "Force per area of contact on a node, along the normal and tangential.";
     pub CONTACT_GAP: f64 = "Gap at a slave node, negative in penetration; 0 where nothing faces it (length).";
     pub CONTACT_SLIP: [f64; 3] = "How far a slave node in contact with friction has slid in the step (length).";
     pub CONTACT_STATUS: f64 = "0 open, 1 in contact without sliding, 2 in contact and sliding, as every node in contact without friction; -1 at nodes that are no slaves.";

@@ -14,7 +14,7 @@ use crate::interface::{
 };
 use crate::pairing::{Pairing, PairingState, integrate, take_normals_of_masters};
 use crate::pairs::Pair;
-use crate::results::{InterfaceSurfaces, write_states};
+use crate::results::{InterfaceSurfaces, write_masters, write_states};
 use crate::safeguards::settle_all;
 use crate::search::{GapCheck, OpenSides, Renewal, assign_roles, farthest_motion};
 use crate::settings::{ContactSettings, Setup};
@@ -259,6 +259,10 @@ impl ContactState {
     pub(super) fn write_states(&self, part: &mut ModelPart) {
         let formulation = self.setup.settings.formulation;
         write_states(&mut part.nodes, &self.states, formulation.frictional());
+        // explicit steps are many and short
+        if self.setup.settings.explicit.is_none() {
+            write_masters(part, &self.states, &self.pairing.blocks, formulation.frictional());
+        }
         self.surfaces.write_states(part, &self.states, formulation);
     }
 

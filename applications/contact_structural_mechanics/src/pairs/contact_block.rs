@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use zelus_core::entities::{EntityBlock, StepView};
+use zelus_core::geometry::Nodal;
 
 use super::pair::{Integral, Pair};
 use crate::interface::SlaveIndex;
@@ -30,6 +31,9 @@ pub trait ContactBlock: EntityBlock {
     /// Slave nodes of the `at`-th pair, in the order of its slave's nodes.
     fn slaves(&self, at: usize) -> &[SlaveIndex];
 
+    /// Mesh nodes of the `at`-th pair's master.
+    fn masters(&self, at: usize) -> &[u32];
+
     /// Takes the states of slave nodes in which the assembly evaluates the block from now on.
     fn set_states(&mut self, states: Arc<SlaveStates>);
 
@@ -38,6 +42,9 @@ pub trait ContactBlock: EntityBlock {
 
     /// Gap, slip and area of every pair in the present configuration; those of other ranks stay without overlap.
     fn integrate(&self, present: IntegrationState<'_>) -> Vec<Integral>;
+
+    /// M of every pair in the present state, slave on master (area); `None` of pairs without overlap and of other ranks.
+    fn master_weights(&self, present: IntegrationState<'_>) -> Vec<Option<Nodal<Nodal<f64>>>>;
 
     /// Step start: keeps the operators of the pairs of this rank against which slip is measured.
     fn keep_operators(&mut self, present: IntegrationState<'_>);

@@ -232,6 +232,10 @@ impl ContactBlock for NitscheBlock {
         self.pairs.slaves(at)
     }
 
+    fn masters(&self, at: usize) -> &[u32] {
+        self.pairs.master_nodes(at)
+    }
+
     fn set_states(&mut self, states: Arc<SlaveStates>) {
         self.pairs.states = states;
     }
@@ -258,6 +262,10 @@ impl ContactBlock for NitscheBlock {
                 out.history_traction[..count].copy_from_slice(&forces.history_traction);
             }
         })
+    }
+
+    fn master_weights(&self, present: IntegrationState<'_>) -> Vec<Option<Nodal<Nodal<f64>>>> {
+        self.pairs.master_weights(present)
     }
 
     fn keep_operators(&mut self, present: IntegrationState<'_>) {

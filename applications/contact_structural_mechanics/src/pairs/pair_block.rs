@@ -153,6 +153,10 @@ impl ContactBlock for PairBlock {
         self.pairs.slaves(at)
     }
 
+    fn masters(&self, at: usize) -> &[u32] {
+        self.pairs.master_nodes(at)
+    }
+
     fn set_states(&mut self, states: Arc<SlaveStates>) {
         self.pairs.states = states;
     }
@@ -178,6 +182,10 @@ impl ContactBlock for PairBlock {
                 out.trial[j] = trial.unwrap_or(out.trial[j]);
             });
         })
+    }
+
+    fn master_weights(&self, present: IntegrationState<'_>) -> Vec<Option<Nodal<Nodal<f64>>>> {
+        self.pairs.master_weights(present)
     }
 
     fn keep_operators(&mut self, present: IntegrationState<'_>) {

@@ -119,7 +119,7 @@ impl PairsOfShapes {
         &self.nodes(at)[self.around + self.master.nodes..]
     }
 
-    fn master_nodes(&self, at: usize) -> &[u32] {
+    pub(super) fn master_nodes(&self, at: usize) -> &[u32] {
         &self.nodes(at)[self.around..self.around + self.master.nodes]
     }
 
@@ -281,6 +281,11 @@ impl PairsOfShapes {
             }
             out
         })
+    }
+
+    /// M of every pair.
+    pub(super) fn master_weights(&self, present: IntegrationState<'_>) -> Vec<Option<Nodal<Nodal<f64>>>> {
+        parallel::map(self.pairs.len(), PAIRS, |at| Some(self.operators_now(at, present)?.1.cells()?.m))
     }
 
     /// Keeps the operators of the pairs of this rank against which slip is measured.

@@ -5,5 +5,5 @@ mod nodal_results;
 mod pair_states;
 
 pub(crate) use interface_surfaces::{InterfaceSurfaces, TiedColumns};
-pub(crate) use nodal_results::{write_forces, write_states};
+pub(crate) use nodal_results::{write_forces, write_masters, write_states};
 pub(crate) use pair_states::{PartsOfPairs, heat, joins, name, pair_states};

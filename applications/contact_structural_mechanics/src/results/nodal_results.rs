@@ -8,6 +8,7 @@ use zelus_core::vector3::{add, scale};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
 use crate::law::NodeState;
+use crate::pairs::{ContactBlock, IntegrationState};
 use crate::slave_nodes::{NodalCombination, SlaveState, SlaveStates};
 use crate::variables::{CONTACT_FORCE, CONTACT_GAP, CONTACT_PRESSURE, CONTACT_SLIP, CONTACT_STATUS, CONTACT_TRACTION};
 
@@ -81,6 +82,85 @@ fn combined<const C: usize>(shown: NodalCombination, of: impl Iterator<Item = ([
     match (all.next(), all.next()) {
         (Some((only, _)), None) => only,
         _ => shown.combined(of),
+    }
+}
+
+/// Numbers of a master node: pressure and traction times area, and the area.
+const MASTER: usize = 5;
+
+/// Nodes of a facet whose shape functions are negative nowhere: the others have forces without meaning of their own on a part of it.
+fn positive_nodes(nodes: usize, space: usize) -> std::ops::Range<usize> {
+    match (nodes, space) {
+        (3, 2) => 2..3,
+        (6, _) => 3..6,
+        (8, _) => 4..8,
+        (9, _) => 8..9,
+        _ => 0..nodes,
+    }
+}
+
+/// Writes pressures and tractions of master nodes that are no slaves: those of the slave nodes that M spreads, over the area,
+/// p_l = Σ_j M_jl p_j / Σ_j M_jl, so that pressure times area is the normal force of contact on the node. Dual functions are negative in
+/// places: at the end of contact the range of the slave's pressures limits the mean. Of facets of second order the nodes with positive
+/// shape functions carry, and the others take their mean. Tractions act on the master; collective.
+pub(crate) fn write_masters(
+    part: &mut ModelPart,
+    states: &SlaveStates,
+    blocks: &[Box<dyn ContactBlock>],
+    frictional: bool,
+) {
+    let space = part.info.domain_size;
+    let mut sums = vec![[0.0; MASTER]; part.nodes.len()];
+    // the least pressure of the slave nodes of a master node, and the largest with the other sign
+    let mut range = vec![[f64::INFINITY; 2]; part.nodes.len()];
+    let own = |nodes: &[u32]| part.evaluates_pair(nodes);
+    let present = IntegrationState { view: &part.view(), states, own: &own };
+    for block in blocks {
+        for (at, weights) in block.master_weights(present).into_iter().enumerate() {
+            let Some(weights) = weights.filter(|_| block.pairs()[at].overlapping) else { continue };
+            let slaves = block.slaves(at);
+            let masters = block.masters(at);
+            let carriers = positive_nodes(masters.len(), space);
+            let mut of_facet = [0.0; MASTER];
+            let add = |to: &mut [f64; MASTER], l: usize| {
+                for (&slave, row) in slaves.iter().zip(weights.iter()) {
+                    let [x, y, z] = traction(&states[slave], frictional);
+                    let numbers = [pressure(&states[slave]), -x, -y, -z, 1.0];
+                    to.iter_mut().zip(numbers).for_each(|(to, number)| *to += row[l] * number);
+                }
+            };
+            for (&slave, &master) in slaves.iter().flat_map(|slave| masters.iter().map(move |master| (slave, master))) {
+                let (own, range) = (pressure(&states[slave]), &mut range[master as usize]);
+                *range = [range[0].min(own), range[1].min(-own)];
+            }
+            for l in carriers.clone() {
+                add(&mut sums[masters[l] as usize], l);
+                add(&mut of_facet, l);
+            }
+            for l in (0..masters.len()).filter(|l| !carriers.contains(l)) {
+                sums[masters[l] as usize].iter_mut().zip(of_facet).for_each(|(to, number)| *to += number);
+            }
+        }
+    }
+    if let Some(share) = &part.share {
+        let all = |node: u32, of: &mut Vec<u32>| of.extend(MASTER as u32 * node..MASTER as u32 * (node + 1));
+        share.halo.expand(all).sum(sums.as_flattened_mut());
+        let both = |node: u32, of: &mut Vec<u32>| of.extend(2 * node..2 * node + 2);
+        share.halo.expand(both).least(range.as_flattened_mut());
+    }
+    let slaves = states.slaves();
+    let values = &mut part.nodes.values;
+    for (node, [pressure, x, y, z, area]) in sums.into_iter().enumerate() {
+        let is_slave = states.at(node as u32).any(|slave| slaves.binary_search(&slave).is_ok());
+        if is_slave || area <= 0.0 {
+            continue;
+        }
+        let (mean, [least, most]) = (pressure / area, range[node]);
+        let limited = mean.max(least).min(-most);
+        let share = if mean * limited > 0.0 { limited / mean } else { 0.0 };
+        values.values_mut(&CONTACT_PRESSURE, 0)[node] = limited;
+        let traction = [x, y, z].map(|part| share * part / area);
+        values.values_mut(&CONTACT_TRACTION, 0)[3 * node..][..3].copy_from_slice(&traction);
     }
 }
 
