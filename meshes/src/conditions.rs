@@ -102,6 +102,32 @@ pub struct Coupling {
     pub is_rigid: bool,
     /// Displacement components that follow.
     pub components: [bool; 3],
+    /// Mass of a rigid body at the reference node.
+    pub mass: f64,
+    /// Its inertia about the reference node.
+    pub inertia: Option<[[f64; 3]; 3]>,
+}
+
+/// A spring or a mass at nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Discrete {
+    /// Indices of its nodes.
+    pub nodes: Vec<u32>,
+    /// Its kind.
+    pub kind: DiscreteKind,
+}
+
+/// Kind of a spring or mass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum DiscreteKind {
+    /// Spring to the ground: stiffness by direction.
+    Ground([f64; 3]),
+    /// Spring between two nodes: stiffness by direction.
+    Between([f64; 3]),
+    /// Spring along the line between two nodes: stiffness.
+    Axial(f64),
+    /// Mass.
+    Mass(f64),
 }
 
 /// A bolt that is tightened at a section.

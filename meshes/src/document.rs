@@ -10,6 +10,7 @@ use zelus_core::model::EntityRole;
 use zelus_core::parameters::Settings;
 
 use super::constraints::constraints;
+use super::discrete;
 use super::mesh::{Mesh, Plane};
 use super::repair::{is_planar, repair};
 
@@ -102,6 +103,7 @@ pub fn document(mesh: &Mesh, names: &Names, place: &Place, said: &mut Vec<Diagno
     let ids = out.elements.iter().chain(&out.conditions).flat_map(|block| block.properties.iter().copied());
     let ids: std::collections::BTreeSet<u32> = ids.collect();
     out.properties = ids.into_iter().map(|id| PropertiesBlock { id, ..PropertiesBlock::default() }).collect();
+    discrete::add(mesh, space, &mut out);
     out.constraints = constraints(mesh, place, said);
     out.sub_model_parts = mesh.groups.iter().map(|group| part(mesh, group, dimension)).collect();
     if lost > 0 {

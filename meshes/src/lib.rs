@@ -10,6 +10,7 @@ pub mod mesh;
 pub mod repair;
 pub mod faces;
 mod constraints;
+mod discrete;
 pub mod document;
 pub mod proximity;
 mod source;

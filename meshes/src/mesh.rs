@@ -2,7 +2,9 @@
 
 use zelus_core::geometry::Shape;
 
-use super::conditions::{Bolt, Clearance, Coupling, Cyclic, Equation, Load, MaterialAxes, Support, Temperature};
+use super::conditions::{
+    Bolt, Clearance, Coupling, Cyclic, Discrete, Equation, Load, MaterialAxes, Support, Temperature,
+};
 
 /// Nodes, cells, named groups of both, and further contents of an input file of a solver.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -27,6 +29,8 @@ pub struct Mesh {
     pub loads: Vec<Load>,
     /// Linear relations between displacements.
     pub equations: Vec<Equation>,
+    /// Springs and masses at nodes.
+    pub discrete: Vec<Discrete>,
     /// Nodes coupled to reference nodes.
     pub couplings: Vec<Coupling>,
     /// Bolts.
@@ -124,12 +128,14 @@ pub struct Pair {
     pub friction: f64,
     /// Whether slave nodes are moved onto the master at the start, without strain.
     pub adjusted: bool,
+    /// Whether surfaces that are in contact stay so, free to slide.
+    pub stays: bool,
 }
 
 impl Pair {
     /// Surfaces that touch without friction.
     pub fn of(slave: String, master: String) -> Self {
-        Self { tied: false, slave, master, friction: 0.0, adjusted: false }
+        Self { tied: false, slave, master, friction: 0.0, adjusted: false, stays: false }
     }
 }
 

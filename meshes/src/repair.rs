@@ -78,6 +78,8 @@ fn drop_nodes(mesh: &mut Mesh) -> usize {
     of_cells.for_each(|&node| used[node as usize] = true);
     let of_equations = mesh.equations.iter().flat_map(|equation| &equation.terms);
     of_equations.for_each(|&(node, ..)| used[node as usize] = true);
+    let of_discrete = mesh.discrete.iter().flat_map(|own| &own.nodes);
+    of_discrete.for_each(|&node| used[node as usize] = true);
     let count = used.iter().filter(|used| !**used).count();
     if count == 0 {
         return 0;
@@ -91,6 +93,9 @@ fn drop_nodes(mesh: &mut Mesh) -> usize {
         mesh.cells.nodes_mut(cell).iter_mut().for_each(|node| *node = place[*node as usize].expect("it is used"));
     }
     for (node, ..) in mesh.equations.iter_mut().flat_map(|equation| &mut equation.terms) {
+        *node = place[*node as usize].expect("it is used");
+    }
+    for node in mesh.discrete.iter_mut().flat_map(|own| &mut own.nodes) {
         *node = place[*node as usize].expect("it is used");
     }
     for group in &mut mesh.groups {

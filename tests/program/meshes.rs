@@ -722,6 +722,131 @@ fn cyclic_sectors_of_abaqus_repeat() {
     }
 }
 
+/// Springs and masses of CalculiX: displacements by `ccx` 2.20 on this file, without and with NLGEOM.
+#[test]
+fn springs_and_masses_of_calculix_act() {
+    let text = "*NODE, NSET=ALL\n1,0,0,0\n2,1,0,0\n3,1,1,0\n4,0,1,0\n5,0,0,1\n6,1,0,1\n7,1,1,1\n8,0,1,1\n9,0,0,3\n10,3,3,1\n\
+        *ELEMENT, TYPE=C3D8, ELSET=A\n1,1,2,3,4,5,6,7,8\n*ELEMENT, TYPE=SPRING1, ELSET=G\n2,7\n\
+        *ELEMENT, TYPE=SPRING2, ELSET=B\n3,5,9\n*ELEMENT, TYPE=SPRINGA, ELSET=X\n4,7,10\n*ELEMENT, TYPE=MASS, ELSET=MA\n5,8\n\
+        *ELSET, ELSET=EVERY\nA, G, 5\n*MATERIAL,NAME=M\n*ELASTIC\n1000.,0.\n*SOLID SECTION, ELSET=A, MATERIAL=M\n\
+        *SPRING, ELSET=G\n1\n\n100.\n*SPRING, ELSET=B\n3,3\n200.\n*SPRING, ELSET=X\n\n300.\n*MASS, ELSET=MA\n2.\n\
+        *BOUNDARY\n1,1,3\n2,2,3\n3,3,3\n4,3,3\n4,1,1\n9,1,3\n10,1,3\n*STEP\n*STATIC\n*CLOAD\n6,1,10.\n7,2,5.\n\
+        *DLOAD\nMA,GRAV,9.81,0,0,-1\n*END STEP\n";
+    // EXTERNAL: ccx 2.20, which ends its iteration at a residual of 0.5 %; without it the two agree to its 7 digits
+    let linear = [
+        ([0.0, 0.0, 1.0], [3.066800e-2, 8.400899e-3, 2.134515e-2]),
+        ([1.0, 1.0, 1.0], [-4.626451e-2, 6.707162e-2, 1.960120e-3]),
+        ([0.0, 1.0, 1.0], [-3.418104e-2, 1.312159e-2, -1.186578e-1]),
+    ];
+    let large = [
+        ([0.0, 0.0, 1.0], [1.924257e-2, 2.403134e-2, 2.185885e-2]),
+        ([1.0, 1.0, 1.0], [-4.746421e-2, 6.761127e-2, -7.702620e-4]),
+        ([0.0, 1.0, 1.0], [-3.028908e-2, 2.019632e-2, -1.375890e-1]),
+    ];
+    for (text, wanted) in [(text.to_owned(), linear), (text.replace("*STEP", "*STEP, NLGEOM"), large)] {
+        let (_scratch, simulation, said) = of_input(&text);
+        assert!(!said.contains("warning"), "{said}");
+        for (point, wanted) in wanted {
+            let found = displacement(&simulation, point);
+            let apart = found.iter().zip(wanted).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-5, "{point:?}: {found:?} {wanted:?}");
+        }
+    }
+}
+
+/// Springs that cannot be, and a mass and inertia on a rigid body: named with their lines, or kept.
+#[test]
+fn springs_that_cannot_be_are_named() {
+    let below = "*BOUNDARY\nLOW, 1, 3\n*NODE, NSET=REF\n100, 0.5, 0.5, 1.\n*RIGID BODY, NSET=TOP, REF NODE=100\n\
+        *ELEMENT, TYPE=MASS, ELSET=W\n901, 100\n*ELEMENT, TYPE=ROTARYI, ELSET=R\n902, 100\n*MASS, ELSET=W\n3.\n\
+        *ROTARY INERTIA, ELSET=R\n1., 2., 3., 0.1\n*ELEMENT, TYPE=SPRING1, ELSET=G\n903, 1\n904, 2\n\
+        *SPRING, ELSET=G, NONLINEAR\n1\n0., 0.\n1., 1.\n*ELEMENT, TYPE=SPRING2, ELSET=H\n905, 1, 2\n*SPRING, ELSET=H\n1, 2\n5.\n\
+        *ELEMENT, TYPE=SPRINGA, ELSET=N\n906, 1, 2\n\
+        *STEP\n*STATIC\n*DLOAD\nW, GRAV, 10., 0., 0., -1.\n*END STEP\n";
+    let (scratch, simulation, said) = of_input(&block_of_abaqus(PLAIN, "", below));
+    for fact in [
+        "*SPRING, NONLINEAR: springs here are linear",
+        "springs between different directions",
+        "elements SPRINGA without constants are left out",
+    ] {
+        assert!(said.lines().any(|line| line.contains(fact) && line.contains("part.inp:")), "{fact}: {said}");
+    }
+    let deck = std::fs::read_to_string(scratch.path().join("deck/ProjectParameters.json")).unwrap();
+    assert!(deck.contains("\"mass\": 3.0") && deck.contains("[[1.0, 0.1, 0.0], [0.1, 2.0, 0.0], [0.0, 0.0, 3.0]]"));
+    // ANALYTIC: the weight of 30 on a column of stiffness 1000
+    let down = displacement(&simulation, [0.5, 0.5, 1.0])[2];
+    assert!((down + 0.03).abs() < 1e-6, "{down}");
+}
+
+/// Surfaces that do not separate: a pull of 0.001 is carried, 210e3 · 0.001 / 2 = 105, and sliding is free; with ROUGH they are tied.
+#[test]
+fn surfaces_of_abaqus_without_separation_carry_tension() {
+    let joint =
+        "*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, NO SEPARATION\n*CONTACT PAIR, INTERACTION=I\nSS, SM\n";
+    let slid = pulled_cubes(joint).replace("TOP, 1, 2\n", "TOP, 2\nTOP, 1, 1, 0.001\n");
+    let (_scratch, simulation, said) = of_input(&slid);
+    assert!(!said.contains("warning"), "{said}");
+    let (pull, shear) = (reaction(&simulation, 2), reaction(&simulation, 0));
+    // ANALYTIC: 0.1 % of the face slides off the other
+    assert!((pull / 105.0 - 1.0).abs() < 2e-3, "{pull}");
+    assert!(shear < 1e-3 * pull, "{shear}");
+    let rough = joint.replace("*CONTACT PAIR", "*FRICTION, ROUGH\n*CONTACT PAIR");
+    let (_scratch, simulation, said) = of_input(&pulled_cubes(&rough));
+    assert!(said.contains("tied: slave SS"), "{said}");
+    assert!((reaction(&simulation, 2) / 105.0 - 1.0).abs() < 1e-9);
+    let open = joint.replace(", NO SEPARATION", "");
+    let (_scratch, simulation, _) = of_input(&pulled_cubes(&open));
+    assert!(reaction(&simulation, 2) < 1e-6);
+}
+
+/// Surfaces 0.0005 apart that do not separate: a pull alone finds nothing, and after a push of 0.001 the same pull stretches by 0.001,
+/// 210e3 · 0.001 / 2. Pairs that are not there, and friction, are errors.
+#[test]
+fn surfaces_without_separation_join_when_they_touch() {
+    let joint = "*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, NO SEPARATION\n*CONTACT PAIR, INTERACTION=I\nSS, SM\n\
+        *CLEARANCE, MASTER=SM, SLAVE=SS, VALUE=0.0005\n";
+    let pulled = pulled_cubes(joint).replace("3, 3, 0.001", "3, 3, 0.0005");
+    let (_scratch, simulation, _) = of_input(&pulled);
+    assert!(reaction(&simulation, 2) < 1e-6);
+    let pushed = pulled_cubes(joint).replace("3, 3, 0.001", "3, 3, -0.001");
+    let (scratch, simulation, _) =
+        of_input(&format!("{pushed}*STEP\n*STATIC\n*BOUNDARY\nTOP, 3, 3, 0.0005\n*END STEP\n"));
+    let force = reaction(&simulation, 2);
+    // ANALYTIC: the moved body is shorter by the clearance
+    assert!((force / 105.0 - 1.0).abs() < 2e-3, "{force}");
+    let deck = scratch.path().join("deck/ProjectParameters.json");
+    let text = std::fs::read_to_string(&deck).unwrap();
+    let friction = text.replace("ALMContactFrictionless", "ALMContactFrictional").replace(
+        "\"contact_type\": \"Frictionless\"",
+        "\"contact_type\": \"Frictional\", \"friction_coefficients\": {\"0\": 0.2}",
+    );
+    for (text, fact) in [
+        (text.replace("\"no_separation\": [\"0\"]", "\"no_separation\": [\"7\"]"), "names the pair \"7\""),
+        (friction, "has \"no_separation\" and friction"),
+    ] {
+        std::fs::write(&deck, text).unwrap();
+        let output = zelus(scratch.path(), &["run", "deck/ProjectParameters.json"]);
+        assert!(output.status.code() == Some(2) && said(&output).contains(fact), "{fact}: {}", said(&output));
+    }
+}
+
+/// An interference of 0.01 by an amplitude that grows, of columns that the mesh lets touch: 210e3 · 0.01 / 2.
+#[test]
+fn interference_of_abaqus_presses() {
+    let joint =
+        "*AMPLITUDE, NAME=GROWS\n0., 0., 1., 1.\n*SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nSS, SM\n";
+    let text =
+        pulled_cubes(joint).replace("3, 3, 0.001\n", "3, 3\n*CONTACT INTERFERENCE, AMPLITUDE=GROWS\nSS, SM, -0.01\n");
+    let (_scratch, simulation, said) = of_input(&text);
+    assert!(!said.contains("warning") && said.contains("it acts in full"), "{said}");
+    let (force, wanted) = (reaction(&simulation, 2), 210e3 * 0.01 / 2.0);
+    // the moved body is longer by the interference
+    assert!((force / wanted - 1.0).abs() < 0.01, "{force} {wanted}");
+    // without an amplitude the allowance ends at nothing: surfaces that touch do not press
+    let (_scratch, simulation, _) = of_input(&text.replace(", AMPLITUDE=GROWS", ""));
+    assert!(reaction(&simulation, 2) < 1e-6);
+}
+
 /// A clearance of 0.01 between two columns that the mesh lets touch: of a motion of 0.02 half strains them, 210e3 · 0.01 / 2.
 #[test]
 fn clearances_of_abaqus_open_surfaces() {

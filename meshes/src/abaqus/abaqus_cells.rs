@@ -39,12 +39,12 @@ pub(super) fn of(name: &str) -> Option<(Shape, Option<Plane>)> {
     let rest = &name[start.len()..];
     let digits = &rest[..rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len())];
     let nodes = match (*start, digits) {
-        ("B2" | "B3", "2" | "3") => digits.parse().ok()?,
+        // beams: 1 linear, 2 quadratic, 3 cubic of two nodes
         ("B2" | "B3", _) => {
-            if digits.ends_with('1') {
-                2
-            } else {
+            if digits.ends_with('2') {
                 3
+            } else {
+                2
             }
         }
         _ => digits.parse().ok()?,

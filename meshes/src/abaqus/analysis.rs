@@ -2,60 +2,59 @@
 
 use std::collections::BTreeMap;
 
-use rustc_hash::FxHashMap;
-use zelus_core::diagnostics::{Diagnostic, Result};
-use zelus_core::vector3::scale;
+use zelus_core::diagnostics::Result;
 
 use super::cards::{Card, Row};
-use super::couplings::{SpecialNodes, direction_at};
+use super::couplings::SpecialNodes;
 use super::model::{Model, Statement};
-use super::schedule::{Amplitude, Course, Entry, Schedule, Times};
+use super::schedule::{Amplitude, Entry, Schedule, Times};
 use super::sets::Kind;
-use crate::conditions::{Load, LoadKind, Prescribed, Support, Temperature};
-use crate::faces::{FaceCells, corners, faces};
+use crate::conditions::{Prescribed, Support};
+use crate::faces::FaceCells;
 use crate::history::History;
-use crate::mesh::{Mesh, Step};
+use crate::mesh::Step;
 
 /// Displacement components of a node; its rotations follow.
-const DIRECTIONS: usize = 3;
+pub(super) const DIRECTIONS: usize = 3;
 
 /// Nodes of a support or temperature: a set, or a single node.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-enum Target {
+pub(super) enum Target {
     Group(String),
     Node(u32),
 }
 
 /// Contents of the cards of the steps, before they are sorted into groups.
-struct Analysis {
-    times: Times,
-    step: usize,
-    special: SpecialNodes,
+pub(super) struct Analysis {
+    pub times: Times,
+    pub step: usize,
+    pub special: SpecialNodes,
     /// Nodes of supports with the number of their axes, in the order of the file.
-    targets: Vec<(Target, Option<usize>)>,
+    pub targets: Vec<(Target, Option<usize>)>,
     /// By number of the target and degree of freedom from 0.
-    supports: Schedule<(usize, usize)>,
+    pub supports: Schedule<(usize, usize)>,
     /// Steps that lock a bolt.
-    locked: BTreeMap<usize, usize>,
+    pub locked: BTreeMap<usize, usize>,
     /// By node and degree of freedom from 0.
-    forces: Schedule<(u32, usize)>,
+    pub forces: Schedule<(u32, usize)>,
     /// By cell of a face.
-    pressures: Schedule<u32>,
-    tractions: Schedule<(u32, usize)>,
-    accelerations: Schedule<(String, usize)>,
+    pub pressures: Schedule<u32>,
+    pub tractions: Schedule<(u32, usize)>,
+    pub accelerations: Schedule<(String, usize)>,
     /// By group and number of the axis.
-    rotations: Schedule<(String, usize)>,
-    axes_of_rotation: Vec<([f64; 3], [f64; 3])>,
-    temperatures: Schedule<u32>,
-    initial: BTreeMap<u32, f64>,
+    pub rotations: Schedule<(String, usize)>,
+    pub axes_of_rotation: Vec<([f64; 3], [f64; 3])>,
+    pub temperatures: Schedule<u32>,
+    pub initial: BTreeMap<u32, f64>,
     /// Groups that loads name.
-    named: Vec<String>,
+    pub named: Vec<String>,
 }
 
 impl Model {
     /// Reads the steps; sets, surfaces and materials are there.
     pub(super) fn read_analysis(&mut self, statements: &[Statement]) {
         let special = self.special_nodes(statements);
+        self.read_discrete(statements, &special);
         let mut all = Analysis {
             times: Times::default(),
             step: 0,
@@ -85,6 +84,7 @@ impl Model {
                 "BOUNDARY" => self.boundary(card, scope, &mut all),
                 "CLOAD" => self.forces(card, scope, &mut all),
                 "DLOAD" | "DSLOAD" => self.distributed(card, scope, &mut all, &mut made),
+                "CONTACT INTERFERENCE" => self.interference(card, &all.times),
                 "TEMPERATURE" | "INITIAL CONDITIONS" => self.temperatures(card, scope, &mut all),
                 _ => Ok(()),
             };
@@ -130,7 +130,7 @@ impl Model {
     }
 
     /// The amplitude that a card names; `None` with a warning where it is not there.
-    fn amplitude_of(&mut self, card: &Card, all: &Analysis) -> Option<String> {
+    pub(super) fn amplitude_of(&mut self, card: &Card, all: &Analysis) -> Option<String> {
         let name = card.get("AMPLITUDE")?.to_ascii_uppercase();
         if all.times.amplitudes.contains_key(&name) {
             return Some(name);
@@ -243,100 +243,6 @@ impl Model {
         Ok(())
     }
 
-    fn distributed(&mut self, card: &Card, scope: &str, all: &mut Analysis, made: &mut FaceCells) -> Result<()> {
-        card.says("OP", "MOD");
-        if card.says("OP", "NEW") {
-            all.pressures.renew(all.step);
-            all.tractions.renew(all.step);
-            all.accelerations.renew(all.step);
-            all.rotations.renew(all.step);
-        }
-        let amplitude = self.amplitude_of(card, all);
-        let step = all.step;
-        let entry = |value: f64| Entry { step, amplitude: amplitude.clone(), value, is_rate: false };
-        card.says("CONSTANT RESULTANT", "NO");
-        card.says("FOLLOWER", "NO");
-        self.each_row(card, &mut |model, row| {
-            let kind = row.get(1).to_ascii_uppercase();
-            let numbers = row.fields.iter().skip(2).filter(|field| !field.is_empty());
-            let numbers = numbers.map(|field| card.number(field, row.line)).collect::<Result<Vec<f64>>>()?;
-            let value = *numbers.first().ok_or_else(|| card.wrong_at(row.line, "a load has no value"))?;
-            let direction = |at: usize| match numbers[at..] {
-                [x, y, z] => Ok([x, y, z]),
-                _ => Err(card.wrong_at(row.line, "a load has no direction")),
-            };
-            let unit = |vector: [f64; 3]| {
-                let size = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
-                if size > 0.0 { Ok(scale(vector, 1.0 / size)) } else { Err(card.wrong_at(row.line, "no direction")) }
-            };
-            let is_pressure = kind.strip_prefix('P').is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit()));
-            let is_of_surface = card.keyword == "DSLOAD";
-            match kind.as_str() {
-                "GRAV" if !is_of_surface => {
-                    let along = unit(direction(1)?)?;
-                    let group =
-                        if row.get(0).is_empty() { String::new() } else { model.element_group(card, row, scope)? };
-                    for i in (0..DIRECTIONS).filter(|&i| along[i] != 0.0) {
-                        all.accelerations.add((group.clone(), i), entry(value * along[i]));
-                    }
-                }
-                "CENTRIF" if !is_of_surface => {
-                    let [x, y, z, ref along @ ..] = numbers[1..] else {
-                        return Err(card.wrong_at(row.line, "a centrifugal load has no axis"));
-                    };
-                    let along = <[f64; 3]>::try_from(along.to_vec());
-                    let axis = unit(along.map_err(|_| card.wrong_at(row.line, "an axis has no direction"))?)?;
-                    let group =
-                        if row.get(0).is_empty() { String::new() } else { model.element_group(card, row, scope)? };
-                    let known = all.axes_of_rotation.iter().position(|own| *own == ([x, y, z], axis));
-                    let at = known.unwrap_or(all.axes_of_rotation.len());
-                    if known.is_none() {
-                        all.axes_of_rotation.push(([x, y, z], axis));
-                    }
-                    all.rotations.add((group, at), entry(value));
-                }
-                "TRVEC" if is_of_surface => {
-                    let along = unit(direction(1)?)?;
-                    let cells = model.faces_of_surface(card, row, all)?;
-                    for cell in cells {
-                        for i in (0..DIRECTIONS).filter(|&i| along[i] != 0.0) {
-                            all.tractions.add((cell, i), entry(value * along[i]));
-                        }
-                    }
-                }
-                _ if is_pressure && is_of_surface => {
-                    for cell in model.faces_of_surface(card, row, all)? {
-                        all.pressures.add(cell, entry(value));
-                    }
-                }
-                _ if is_pressure => {
-                    for element in model.found(card, row.get(0), row.line, scope, Kind::Elements)? {
-                        let number = model.face_of(card, row.line, element, &kind)?;
-                        let cell = made.cell(&mut model.mesh, element as usize, number);
-                        all.pressures.add(cell, entry(value));
-                    }
-                }
-                _ => return Err(card.wrong_at(row.line, format!("a load of kind {kind} is not known"))),
-            }
-            Ok(())
-        });
-        Ok(())
-    }
-
-    fn faces_of_surface(&self, card: &Card, row: &Row, all: &mut Analysis) -> Result<Vec<u32>> {
-        let group = self.surface(card, row.get(0), row.line)?;
-        let cells = self.mesh.group(&group).map(|group| group.cells.clone()).unwrap_or_default();
-        all.named.push(group);
-        Ok(cells)
-    }
-
-    /// The group of a set of elements.
-    fn element_group(&self, card: &Card, row: &Row, scope: &str) -> Result<String> {
-        let set = self.sets.find(Kind::Elements, scope, row.get(0));
-        let missing = || card.wrong_at(row.line, format!("there is no set of elements {}", row.get(0)));
-        Ok(set.ok_or_else(missing)?.group.clone())
-    }
-
     fn temperatures(&mut self, card: &Card, scope: &str, all: &mut Analysis) -> Result<()> {
         let is_initial = card.keyword == "INITIAL CONDITIONS";
         if is_initial && !card.says("TYPE", "TEMPERATURE") {
@@ -362,13 +268,13 @@ impl Model {
     }
 
     /// A name that no group has yet.
-    fn new_name(&self, stem: &str) -> String {
+    pub(super) fn new_name(&self, stem: &str) -> String {
         let number = (1..).find(|number| self.mesh.group(&format!("{stem}_{number}")).is_none()).unwrap_or(1);
         format!("{stem}_{number}")
     }
 
     /// A group of these nodes: one of those named with the same, or a new one.
-    fn group_of_nodes(&mut self, mut nodes: Vec<u32>, stem: &str, named: &[String]) -> String {
+    pub(super) fn group_of_nodes(&mut self, mut nodes: Vec<u32>, stem: &str, named: &[String]) -> String {
         nodes.sort_unstable();
         nodes.dedup();
         let is_same =
@@ -384,212 +290,6 @@ impl Model {
         let name = if is_free { single } else { self.new_name(stem) };
         self.mesh.group_mut(&name).nodes = nodes;
         name
-    }
-
-    fn keep_supports(&mut self, all: &Analysis) {
-        let courses = all.supports.courses(&all.times);
-        // single nodes that are held alike are one group
-        let mut single: BTreeMap<String, (Vec<u32>, Option<usize>, Vec<(usize, Course)>)> = BTreeMap::new();
-        for (at, (target, axes)) in all.targets.iter().enumerate() {
-            let own: Vec<(usize, Course)> =
-                courses.iter().filter(|((of, _), _)| *of == at).map(|((_, i), course)| (*i, course.clone())).collect();
-            match target {
-                Target::Group(group) => self.keep_support(group, *axes, &own, all),
-                Target::Node(node) if all.special.is_apart(*node) => self.keep_apart(*node, &own, all),
-                Target::Node(node) => {
-                    let kept = single.entry(format!("{axes:?}{own:?}")).or_insert((Vec::new(), *axes, own));
-                    kept.0.push(*node);
-                }
-            }
-        }
-        let mut rest: Vec<_> = single.into_values().collect();
-        rest.sort_by_key(|(nodes, ..)| nodes[0]);
-        for (nodes, axes, own) in rest {
-            let group = self.group_of_nodes(nodes, "Fixed", &[]);
-            self.keep_support(&group, axes, &own, all);
-        }
-        for (bolt, step) in &all.locked {
-            let until = step.checked_sub(2).and_then(|before| all.times.steps.get(before)).map(|step| step.end);
-            self.mesh.bolts[*bolt].until = until;
-        }
-    }
-
-    /// Supports of displacements of a group, one for each span of time.
-    fn keep_support(&mut self, group: &str, axes: Option<usize>, courses: &[(usize, Course)], all: &Analysis) {
-        for (direction, course) in courses.iter().filter(|(direction, _)| *direction < DIRECTIONS) {
-            self.add_support(group, Prescribed::Displacement, *direction, course, axes, all);
-        }
-    }
-
-    fn add_support(
-        &mut self,
-        group: &str,
-        quantity: Prescribed,
-        direction: usize,
-        course: &Course,
-        axes: Option<usize>,
-        all: &Analysis,
-    ) {
-        let interval = (course.start, course.end);
-        let axes = axes.map(|at| all.special.axes[at].clone());
-        let supports = &mut self.mesh.supports;
-        let is_same = |own: &Support| {
-            own.group == group && own.quantity == quantity && own.interval == interval && own.axes == axes
-        };
-        let at = supports.iter().position(is_same).unwrap_or_else(|| {
-            let values = [None, None, None];
-            supports.push(Support { group: group.to_owned(), quantity, values, axes, interval });
-            supports.len() - 1
-        });
-        supports[at].values[direction] = Some(course.value.clone());
-    }
-
-    /// Supports of a reference node, or the shortening of a bolt.
-    fn keep_apart(&mut self, node: u32, courses: &[(usize, Course)], all: &Analysis) {
-        if let Some(&bolt) = all.special.bolts.get(&node) {
-            let along = courses.iter().find(|(direction, _)| *direction == 0);
-            self.mesh.bolts[bolt].shortening = along.map(|(_, course)| course.value.clone());
-            return;
-        }
-        let Some((reference, rotates)) = all.special.references.get(&node) else { return };
-        for (direction, course) in courses {
-            let is_rotation = *rotates || *direction >= DIRECTIONS;
-            let quantity = if is_rotation { Prescribed::Rotation } else { Prescribed::Displacement };
-            self.add_support(reference, quantity, direction % DIRECTIONS, course, None, all);
-        }
-    }
-
-    fn keep_forces(&mut self, all: &Analysis) {
-        let mut by_node: BTreeMap<u32, [History; 2 * DIRECTIONS]> = BTreeMap::new();
-        for ((node, freedom), course) in all.forces.courses(&all.times) {
-            by_node.entry(node).or_default()[freedom] = course.value;
-        }
-        let mut alike: BTreeMap<String, (Vec<u32>, [History; 3])> = BTreeMap::new();
-        for (node, histories) in by_node {
-            let [x, y, z, mx, my, mz] = histories;
-            if let Some(&bolt) = all.special.bolts.get(&node) {
-                self.mesh.bolts[bolt].force = Some(x);
-                continue;
-            }
-            if let Some((reference, rotates)) = all.special.references.get(&node) {
-                let (forces, moments) = if *rotates { ([mx, my, mz], [x, y, z]) } else { ([x, y, z], [mx, my, mz]) };
-                for (kind, all) in [(0, forces), (1, moments)] {
-                    if all.iter().any(|own| own.as_constant() != Some(0.0)) {
-                        let kind = if kind == 0 { LoadKind::Force(all) } else { LoadKind::Moment(all) };
-                        self.mesh.loads.push(Load { group: reference.clone(), kind });
-                    }
-                }
-                continue;
-            }
-            let mut force = [x, y, z];
-            if let Some(&axes) = all.special.axes_of.get(&node) {
-                let axes = &all.special.axes[axes];
-                let along = [0, 1, 2].map(|i| direction_at(axes, i, self.mesh.points[node as usize]));
-                let component = |i: usize| {
-                    let parts = along.iter().zip(&force).map(|(along, own)| own.scaled(along[i]));
-                    parts.reduce(|sum, part| sum.plus(&part)).unwrap_or_default()
-                };
-                force = [component(0), component(1), component(2)];
-            }
-            let kept = alike.entry(format!("{force:?}")).or_insert((Vec::new(), force));
-            kept.0.push(node);
-        }
-        let mut rest: Vec<_> = alike.into_values().collect();
-        rest.sort_by_key(|(nodes, _)| nodes[0]);
-        for (nodes, force) in rest {
-            let group = self.group_of_nodes(nodes, "Forces", &all.named);
-            self.mesh.loads.push(Load { group, kind: LoadKind::Force(force) });
-        }
-    }
-
-    /// A group of these faces: one of those named with the same, or a new one.
-    fn group_of_faces(&mut self, mut cells: Vec<u32>, stem: &str, named: &[String]) -> String {
-        cells.sort_unstable();
-        let is_same = |name: &&String| self.mesh.group(name).is_some_and(|group| group.cells == cells);
-        if let Some(name) = named.iter().find(is_same) {
-            return name.clone();
-        }
-        let name = self.new_name(stem);
-        self.mesh.group_mut(&name).cells = cells;
-        name
-    }
-
-    /// Thickness of the planar body of each loaded face; bodies of different thickness need loads of their own per length.
-    fn thickness_of_faces(&self) -> impl Fn(&Mesh, u32) -> f64 + use<> {
-        let is_even = self.mesh.dimension() == 3 || self.mesh.sections.iter().all(|own| own.thickness == 1.0);
-        let owners = if is_even { FxHashMap::default() } else { faces(&self.mesh) };
-        let mut of_element: FxHashMap<u32, f64> = FxHashMap::default();
-        for section in self.mesh.sections.iter().filter(|_| !is_even) {
-            let cells = self.mesh.group(&section.group).map(|group| group.cells.as_slice()).unwrap_or_default();
-            of_element.extend(cells.iter().map(|&cell| (cell, section.thickness)));
-        }
-        move |mesh, cell| {
-            let key = corners(mesh.cells.shapes[cell as usize], mesh.cells.nodes(cell as usize));
-            owners.get(&key).and_then(|face| of_element.get(&face.element)).copied().unwrap_or(1.0)
-        }
-    }
-
-    fn keep_faces(&mut self, all: &Analysis) {
-        let thickness = self.thickness_of_faces();
-        let mut alike: BTreeMap<String, (Vec<u32>, History)> = BTreeMap::new();
-        for (cell, course) in all.pressures.courses(&all.times) {
-            let key = format!("{}{:?}", thickness(&self.mesh, cell), course.value);
-            alike.entry(key).or_insert((Vec::new(), course.value)).0.push(cell);
-        }
-        let mut rest: Vec<_> = alike.into_values().collect();
-        rest.sort_by_key(|(cells, _)| cells[0]);
-        for (cells, value) in rest {
-            let group = self.group_of_faces(cells, "Pressure", &all.named);
-            self.mesh.loads.push(Load { group, kind: LoadKind::Pressure(value) });
-        }
-        let mut by_cell: BTreeMap<u32, [History; 3]> = BTreeMap::new();
-        for ((cell, direction), course) in all.tractions.courses(&all.times) {
-            by_cell.entry(cell).or_default()[direction] = course.value;
-        }
-        let mut alike: BTreeMap<String, (Vec<u32>, [History; 3])> = BTreeMap::new();
-        for (cell, value) in by_cell {
-            let key = format!("{}{value:?}", thickness(&self.mesh, cell));
-            alike.entry(key).or_insert((Vec::new(), value)).0.push(cell);
-        }
-        for (cells, value) in alike.into_values() {
-            let group = self.group_of_faces(cells, "Traction", &all.named);
-            self.mesh.loads.push(Load { group, kind: LoadKind::Traction(value) });
-        }
-        let mut by_group: BTreeMap<String, [History; 3]> = BTreeMap::new();
-        for ((group, direction), course) in all.accelerations.courses(&all.times) {
-            by_group.entry(group).or_default()[direction] = course.value;
-        }
-        let loads = by_group.into_iter().map(|(group, value)| Load { group, kind: LoadKind::Acceleration(value) });
-        self.mesh.loads.extend(loads);
-        for ((group, at), course) in all.rotations.courses(&all.times) {
-            let (origin, axis) = all.axes_of_rotation[at];
-            self.mesh.loads.push(Load { group, kind: LoadKind::Centrifugal { square: course.value, origin, axis } });
-        }
-    }
-
-    fn keep_temperatures(&mut self, all: &Analysis) {
-        let courses = all.temperatures.courses(&all.times);
-        if courses.iter().all(|(_, course)| course.value.as_constant().is_some()) {
-            // initial temperatures alone strain nothing
-            return;
-        }
-        let mut initial = all.initial.values().copied();
-        if let Some(first) = initial.next() {
-            if initial.any(|value| value != first) {
-                let fact = "initial temperatures differ: expansion begins at the first one";
-                self.report.push(Diagnostic::warning("not-taken-over", fact));
-            }
-            let expansions = self.mesh.materials.iter_mut().filter_map(|own| own.expansion.as_mut());
-            expansions.for_each(|own| own.reference = first);
-        }
-        let mut alike: BTreeMap<String, (Vec<u32>, History)> = BTreeMap::new();
-        for (node, course) in courses {
-            alike.entry(format!("{:?}", course.value)).or_insert((Vec::new(), course.value)).0.push(node);
-        }
-        for (nodes, value) in alike.into_values() {
-            let group = self.group_of_nodes(nodes, "Temperature", &all.named);
-            self.mesh.temperatures.push(Temperature { group, value });
-        }
     }
 }
 

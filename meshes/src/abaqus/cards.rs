@@ -9,9 +9,10 @@ use zelus_core::diagnostics::{Diagnostic, Error, Place, Report, Result};
 use crate::source;
 
 /// Keywords of several words: CalculiX reads them without blanks, too.
-const WORDS: [&str; 26] = [
+const WORDS: [&str; 28] = [
     "COMPLEX FREQUENCY",
     "CONTACT FILE",
+    "CONTACT INTERFERENCE",
     "CONTACT OUTPUT",
     "CONTACT PAIR",
     "CONTACT PRINT",
@@ -31,6 +32,7 @@ const WORDS: [&str; 26] = [
     "PHYSICAL CONSTANTS",
     "PRE-TENSION SECTION",
     "RIGID BODY",
+    "ROTARY INERTIA",
     "SECTION PRINT",
     "SOLID SECTION",
     "SURFACE BEHAVIOR",
@@ -194,7 +196,7 @@ fn add(path: &Path, depth: usize, out: &mut Vec<Card>, report: &mut Report) -> R
     let text = decoded(source::read(path)?).replace("\r\n", "\n").replace('\r', "\n");
     let file = Rc::new(path.to_owned());
     let is_data = |(_, line): &(usize, &str)| !line.trim_start().starts_with("**") && !line.trim().is_empty();
-    let mut lines = text.lines().enumerate().filter(is_data);
+    let mut lines = text.lines().enumerate().filter(is_data).peekable();
     let mut stray = false;
     while let Some((at, line)) = lines.next() {
         let number = at as u32 + 1;
@@ -214,7 +216,7 @@ fn add(path: &Path, depth: usize, out: &mut Vec<Card>, report: &mut Report) -> R
         let mut head = head.trim_end().to_owned();
         // a comma at the end goes on in the next line
         while head.ends_with(',') {
-            let Some((_, more)) = lines.next() else { break };
+            let Some((_, more)) = lines.next_if(|(_, more)| has_parameters(more)) else { break };
             head.push_str(more.trim());
         }
         let mut words = head.split(',');
@@ -237,6 +239,12 @@ fn add(path: &Path, depth: usize, out: &mut Vec<Card>, report: &mut Report) -> R
         }
     }
     Ok(())
+}
+
+/// Whether a line below a keyword that ends in a comma has its parameters; programs end keywords without any in a comma, too.
+fn has_parameters(line: &str) -> bool {
+    let line = line.trim();
+    !line.starts_with('*') && line.split(',').all(|field| field.trim().parse::<f64>().is_err())
 }
 
 fn include(card: &Card, path: &Path, depth: usize, out: &mut Vec<Card>, report: &mut Report) -> Result<()> {

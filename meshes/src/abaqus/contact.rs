@@ -7,6 +7,7 @@ use zelus_core::vector3::{add, cross, dot, norm, scale, sub};
 
 use super::cards::Card;
 use super::model::{Model, Statement};
+use super::schedule::Times;
 use super::sets::Kind;
 use crate::conditions::{Clearance, Cyclic};
 use crate::mesh::Pair;
@@ -19,6 +20,8 @@ const ROUGH: f64 = 1e9;
 struct Interaction {
     friction: f64,
     is_tied: bool,
+    stays: bool,
+    is_rough: bool,
 }
 
 impl Model {
@@ -40,11 +43,14 @@ impl Model {
                         self.report.push(card.left_out(fact));
                     }
                     if let Some(friction) = self.tolerate(friction) {
-                        all.entry(under_way.clone()).or_default().friction = friction;
+                        let own = all.entry(under_way.clone()).or_default();
+                        (own.friction, own.is_rough) = (friction, card.get("ROUGH").is_some());
                     }
                 }
                 "SURFACE BEHAVIOR" => {
-                    all.entry(under_way.clone()).or_default().is_tied = card.says("PRESSURE-OVERCLOSURE", "TIED");
+                    let own = all.entry(under_way.clone()).or_default();
+                    own.is_tied = card.says("PRESSURE-OVERCLOSURE", "TIED");
+                    own.stays = card.get("NO SEPARATION").is_some();
                     self.behavior(card);
                 }
                 _ => {}
@@ -68,7 +74,14 @@ impl Model {
             }
             let name = card.get("INTERACTION").unwrap_or_default().to_ascii_uppercase();
             let law = all.get(&name).cloned().unwrap_or_default();
-            let tied = is_tie || law.is_tied;
+            // surfaces that neither open nor slide
+            let tied = is_tie || law.is_tied || (law.stays && law.is_rough);
+            let stays = law.stays && !tied;
+            if stays && law.friction > 0.0 {
+                let fact = "friction of surfaces with NO SEPARATION is left out: they slide freely";
+                self.report.push(card.left_out(fact));
+            }
+            let friction = if stays { 0.0 } else { law.friction };
             let adjusted = !tied && card.get("ADJUST").is_some_and(|given| !given.eq_ignore_ascii_case("NO"));
             for sides in ["SURFACE TO SURFACE", "MORTAR", "LINMORTAR", "PGLINMORTAR"] {
                 card.says("TYPE", sides);
@@ -81,7 +94,7 @@ impl Model {
                 let slave = model.surface(card, row.get(0), row.line)?;
                 let other = row.get(1);
                 let master = if other.is_empty() { slave.clone() } else { model.surface(card, other, row.line)? };
-                model.mesh.pairs.push(Pair { tied, slave, master, friction: law.friction, adjusted });
+                model.mesh.pairs.push(Pair { tied, slave, master, friction, adjusted, stays });
                 Ok(())
             });
         }
@@ -143,6 +156,36 @@ impl Model {
         let master = self.surface(card, card.require("MASTER")?, line)?;
         let value = card.number(card.require("VALUE")?, line)?;
         self.mesh.clearances.push(Clearance { slave, master, value });
+        Ok(())
+    }
+
+    /// Interference of two surfaces at the end of the step: the value of the amplitude there, which falls to 0 without one.
+    pub(super) fn interference(&mut self, card: &Card, times: &Times) -> Result<()> {
+        card.says("TYPE", "CONTACT PAIR");
+        card.get("SHRINK");
+        card.says("OP", "MOD");
+        let end = match card.get("AMPLITUDE").map(str::to_ascii_uppercase) {
+            None => 0.0,
+            Some(name) => {
+                let found = times.amplitudes.get(&name);
+                let found = found.ok_or_else(|| card.wrong(format!("there is no *AMPLITUDE {name} that is known")))?;
+                let step = times.steps.last().map_or((0.0, 1.0), |step| (step.start, step.end));
+                found.table.at(if found.is_total { step.1 } else { step.1 - step.0 })
+            }
+        };
+        self.each_row(card, &mut |model, row| {
+            let slave = model.surface(card, row.get(0), row.line)?;
+            let master = model.surface(card, row.get(1), row.line)?;
+            let allowed = if row.get(2).is_empty() { 0.0 } else { card.number(row.get(2), row.line)? };
+            let fact = if allowed * end == 0.0 {
+                "*CONTACT INTERFERENCE: the overlap of the mesh presses in full from the first increment"
+            } else {
+                model.mesh.clearances.push(Clearance { slave, master, value: allowed * end });
+                "*CONTACT INTERFERENCE: it acts in full from the first increment, whatever distance the mesh has"
+            };
+            model.report.push(Diagnostic::note("not-taken-over", fact).at(card.place_of(row.line)));
+            Ok(())
+        });
         Ok(())
     }
 

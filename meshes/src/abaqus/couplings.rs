@@ -100,7 +100,16 @@ impl Model {
             (0..DIRECTIONS).filter(|at| (first..=last).contains(&(at + 1))).for_each(|at| components[at] = true);
         }
         let point = self.mesh.points[node as usize];
-        self.mesh.couplings.push(Coupling { group, reference: reference.clone(), point, is_rigid, components });
+        let (mass, inertia) = (0.0, None);
+        self.mesh.couplings.push(Coupling {
+            group,
+            reference: reference.clone(),
+            point,
+            is_rigid,
+            components,
+            mass,
+            inertia,
+        });
         out.references.insert(node, (reference, false));
         Ok(())
     }
@@ -116,7 +125,8 @@ impl Model {
         let group = set.ok_or_else(|| card.wrong(format!("there is no set {name}")))?;
         let point = self.mesh.points[node as usize];
         let components = [true; DIRECTIONS];
-        self.mesh.couplings.push(Coupling { group, reference: reference.clone(), point, is_rigid: true, components });
+        let (own, mass, inertia) = (reference.clone(), 0.0, None);
+        self.mesh.couplings.push(Coupling { group, reference: own, point, is_rigid: true, components, mass, inertia });
         if card.get("ROT NODE").is_some() {
             let (rotation, _) = self.reference(card, scope, "ROT NODE")?;
             out.references.insert(rotation, (reference.clone(), true));

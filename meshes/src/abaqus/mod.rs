@@ -16,7 +16,10 @@ mod hyperelastic;
 mod materials;
 mod contact;
 mod couplings;
+mod discrete_elements;
 mod analysis;
+mod distributed_loads;
+mod kept;
 mod abaqus_writer;
 
 use std::path::Path;

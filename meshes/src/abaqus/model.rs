@@ -9,6 +9,7 @@ use zelus_core::diagnostics::{Diagnostic, Error, Place, Report, Result, Severity
 
 use super::abaqus_cells;
 use super::cards::{self, Card, Row};
+use super::discrete_elements::DiscreteElement;
 use super::instance::Placement;
 use super::sets::{Kind, Sets};
 use super::unread;
@@ -42,7 +43,10 @@ pub(super) struct Model {
     pub nodes: FxHashMap<(String, u32), u32>,
     pub elements: FxHashMap<(String, u32), u32>,
     /// Elements of types that are not known: sets may list them.
-    omitted: FxHashSet<(String, u32)>,
+    pub(super) omitted: FxHashSet<(String, u32)>,
+    /// Springs and masses, and their places by label.
+    pub(super) discrete: Vec<DiscreteElement>,
+    pub(super) discrete_of: FxHashMap<(String, u32), u32>,
     pub sets: Sets,
     /// Types of elements that come in as cells without stiffness.
     structural: BTreeMap<String, Place>,
@@ -170,6 +174,8 @@ impl Model {
                 let name = card.require("ELSET")?;
                 let found = self.listed(card, scope, Kind::Elements);
                 self.sets.set_mut(Kind::Elements, home, name).cells.extend(found);
+                let discrete = self.listed_discrete(card, scope);
+                self.list_discrete(home, name, discrete);
             }
             _ => {}
         }
@@ -204,6 +210,9 @@ impl Model {
     fn add_elements(&mut self, card: &Card, scope: &str) -> Result<()> {
         let kind = card.require("TYPE")?;
         card.is_read.set(true);
+        if self.add_discrete(card, scope).is_some() {
+            return Ok(());
+        }
         let Some((shape, plane)) = abaqus_cells::of(kind) else {
             let labels = card.rows.iter().filter_map(|row| row.get(0).parse().ok());
             self.omitted.extend(labels.map(|label: u32| (scope.to_owned(), label)));

@@ -19,6 +19,8 @@ pub(super) struct Set {
     pub group: String,
     pub nodes: Vec<u32>,
     pub cells: Vec<u32>,
+    /// Springs and masses.
+    pub discrete: Vec<u32>,
 }
 
 /// Kind, instance and name in capitals.

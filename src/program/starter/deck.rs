@@ -57,7 +57,7 @@ pub(super) fn text(
     let held = supports.iter().flat_map(|support| processes::support(support, space, texts)).collect();
     let mut lists = vec![list("constraints_process_list", held), list("loads_process_list", loads)];
     let mut add = |name: &str, items: Vec<String>| lists.extend((!items.is_empty()).then(|| list(name, items)));
-    add("couplings_process_list", mesh.couplings.iter().map(|own| processes::coupling(own, supports)).collect());
+    add("couplings_process_list", mesh.couplings.iter().map(|own| processes::coupling(own, supports, space)).collect());
     add("periodicity_process_list", mesh.sectors.iter().map(processes::sector).collect());
     add("clearances_process_list", mesh.clearances.iter().map(processes::clearance).collect());
     add("bolts_process_list", mesh.bolts.iter().filter_map(|bolt| processes::bolt(bolt, texts)).collect());

@@ -59,7 +59,7 @@ impl Formulation {
         if ties && found.name != KNOWN[0].name {
             let remedy = format!("leave the option out, or name {}", KNOWN[0].name);
             return Err(wrong(
-                format!("{name}: beside ties a deck of `zelus new` has {} alone", KNOWN[0].name),
+                format!("{name}: beside ties and NO SEPARATION a deck of `zelus new` has {} alone", KNOWN[0].name),
                 remedy,
             ));
         }

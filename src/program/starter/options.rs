@@ -42,7 +42,7 @@ impl Options {
     pub(super) fn formulation(&self, mesh: &Mesh) -> Result<Formulation> {
         let Some(name) = &self.formulation else { return Ok(Formulation::default()) };
         let friction = mesh.pairs.iter().any(|pair| !pair.tied && pair.friction > 0.0);
-        Formulation::find(name, friction, mesh.pairs.iter().any(|pair| pair.tied))
+        Formulation::find(name, friction, mesh.pairs.iter().any(|pair| pair.tied || pair.stays))
     }
 
     /// Puts supports, loads, friction and materials of parts into the mesh; gives the material of all other parts.

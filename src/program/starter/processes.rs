@@ -192,7 +192,7 @@ pub(super) fn forces_of_file(group: &str, file: &str, space: usize) -> Vec<Strin
 }
 
 /// A coupling; supports of the reference node decide who leads.
-pub(super) fn coupling(coupling: &Coupling, supports: &[Support]) -> String {
+pub(super) fn coupling(coupling: &Coupling, supports: &[Support], space: usize) -> String {
     let mut parameters = vec![
         part(&coupling.group),
         word("reference_model_part_name", &format!("Structure.{}", coupling.reference)),
@@ -201,6 +201,13 @@ pub(super) fn coupling(coupling: &Coupling, supports: &[Support]) -> String {
     let module = if coupling.is_rigid { "kinematic_coupling_process" } else { "distributing_coupling_process" };
     if coupling.is_rigid && coupling.components != [true; 3] {
         parameters.push(format!("\"components\": {:?}", coupling.components));
+    }
+    if coupling.mass != 0.0 {
+        parameters.push(format!("\"mass\": {:?}", coupling.mass));
+    }
+    if let Some(inertia) = coupling.inertia {
+        let text = if space == 3 { format!("{inertia:?}") } else { format!("{:?}", inertia[2][2]) };
+        parameters.push(format!("\"inertia\": {text}"));
     }
     if !coupling.is_rigid && supports.iter().any(|support| support.group == coupling.reference) {
         parameters.push("\"reference_node_leads\": true".to_owned());
@@ -302,6 +309,10 @@ pub(super) fn contact(pairs: &[&Pair], module: &str, kind: &str, friction: bool,
     if friction {
         parameters
             .push(format!("\"friction_coefficients\": {}", by_pair(pairs, |pair| format!("{:?}", pair.friction))));
+    }
+    let stays: Vec<String> = (0..pairs.len()).filter(|&at| pairs[at].stays).map(|at| format!("\"{at}\"")).collect();
+    if !stays.is_empty() {
+        parameters.push(format!("\"no_separation\": [{}]", stays.join(", ")));
     }
     if plane == Some(Plane::Axial) {
         parameters.push("\"alternative_formulations\": {\"axisymmetric\": true}".to_owned());
