@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::blocks::{Deck, Joint, Mesh};
-use crate::support::{change, root, said, scratch_copy, zelus};
+use crate::support::{change, root, run_with_report, said, scratch_copy, zelus};
 use serde_json::{Value, json};
 
 const DECK: &str = "ProjectParameters.json";
@@ -14,8 +14,7 @@ const DECK: &str = "ProjectParameters.json";
 fn page(deck: &str, prepare: impl Fn(&Path)) -> (tempfile::TempDir, PathBuf) {
     let folder = scratch_copy(&root().join(deck));
     prepare(folder.path());
-    let output = zelus(folder.path(), &["run", DECK, "--report", "run.json", "-q"]);
-    assert!(output.status.success(), "{}", said(&output));
+    run_with_report(folder.path(), DECK);
     let output = zelus(folder.path(), &["report", "run.json", "-o", "page.html"]);
     assert!(output.status.success(), "{}", said(&output));
     let page = folder.path().join("page.html");
@@ -139,8 +138,7 @@ fn the_page_shows_what_an_engineer_looks_for() {
             "Parameters": {"model_part_name": "Structure"}});
         deck["processes"]["output"] = json!([output]);
     });
-    let output = zelus(folder.path(), &["run", DECK, "--report", "run.json", "-q"]);
-    assert!(output.status.success(), "{}", said(&output));
+    run_with_report(folder.path(), DECK);
     let report = support::read_json(&folder.path().join("run.json")).expect("a report");
     let bodies: Vec<&str> =
         report["bodies"].as_array().into_iter().flatten().filter_map(|own| own["name"].as_str()).collect();

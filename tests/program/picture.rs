@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::page::press_fit;
-use crate::support::{change, contents, root, said, scratch_copy, zelus};
+use crate::support::{change, contents, root, run_with_report, said, scratch_copy, zelus};
 use serde_json::json;
 
 const DECK: &str = "ProjectParameters.json";
@@ -56,8 +56,7 @@ fn a_picture_shows_the_model_and_what_a_cut_opens() {
             "Parameters": {"model_part_name": "Structure"}});
         deck["processes"]["output"] = json!([output]);
     });
-    let output = zelus(folder.path(), &["run", DECK, "--report", "run.json", "-q"]);
-    assert!(output.status.success(), "{}", said(&output));
+    run_with_report(folder.path(), DECK);
     let draw = |name: &str, options: &[&str]| {
         let output = zelus(folder.path(), &[&["report", "run.json", "--picture", name], options].concat());
         assert!(output.status.success() && said(&output).contains(name), "{}", said(&output));
@@ -73,6 +72,9 @@ fn a_picture_shows_the_model_and_what_a_cut_opens() {
     assert!(cut.count(is_top) > 20, "{}", cut.count(is_top));
     let hidden = draw("hidden.png", &[&pressure[..], &["--hide", "Lower", "--view", "-1,-1,1"]].concat());
     assert!(hidden.count(is_top) > 5_000, "{}", hidden.count(is_top));
+    // and on the pin, which is the master
+    let pin = draw("pin.png", &[&pressure[..], &["--hide", "Upper", "--view", "1,1,1"]].concat());
+    assert!(pin.count(is_top) > 5_000, "{}", pin.count(is_top));
     // a quarter that is mirrored twice is four times as large
     let area = |picture: &Picture| picture.count(|own| own != [255; 3]);
     let quarter = draw("quarter.png", &["--view", "z", "--factor", "0"]);
@@ -94,8 +96,7 @@ fn colours_of_a_picture_are_the_values_of_the_legend() {
     let output = r#""output_processes": {"vtu": [{"python_module": "vtu_output_process", "kratos_module": "KratosMultiphysics",
         "Parameters": {"model_part_name": "Bars"}}],"#;
     change(folder.path(), DECK, "\"output_processes\": {", output);
-    let output = zelus(folder.path(), &["run", DECK, "--report", "run.json", "-q"]);
-    assert!(output.status.success(), "{}", said(&output));
+    run_with_report(folder.path(), DECK);
     let options = ["report", "run.json", "--picture", "heat.png", "--range", "0:100"];
     let output = zelus(folder.path(), &options);
     assert!(output.status.success(), "{}", said(&output));
@@ -129,8 +130,7 @@ fn colours_of_a_picture_are_the_values_of_the_legend() {
 #[test]
 fn what_a_picture_cannot_show_is_said() {
     let folder = scratch_copy(&root().join("examples/hertz_line_contact"));
-    let output = zelus(folder.path(), &["run", DECK, "--report", "run.json", "-q"]);
-    assert!(output.status.success(), "{}", said(&output));
+    run_with_report(folder.path(), DECK);
     std::fs::write(folder.path().join("mine.png"), "mine").expect("a file");
     for (words, code, says) in [
         (&["--picture", "model.jpg"][..], 2, "let the name end in .png"),
@@ -163,8 +163,7 @@ fn what_a_picture_cannot_show_is_said() {
     }
     // a run without results
     let folder = scratch_copy(&root().join("tests/cases/contact_2d/matching"));
-    let output = zelus(folder.path(), &["run", DECK, "--report", "run.json", "-q"]);
-    assert!(output.status.success(), "{}", said(&output));
+    run_with_report(folder.path(), DECK);
     let output = zelus(folder.path(), &["report", "run.json", "--picture", "model.png"]);
     assert!(output.status.code() == Some(2) && said(&output).contains("no-results"), "{}", said(&output));
 }

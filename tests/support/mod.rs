@@ -84,6 +84,12 @@ pub fn zelus(folder: &Path, arguments: &[&str]) -> Output {
         .expect("the program starts")
 }
 
+/// Runs the deck of a folder, with the report run.json.
+pub fn run_with_report(folder: &Path, deck: &str) {
+    let output = zelus(folder, &["run", deck, "--report", "run.json", "-q"]);
+    assert!(output.status.success(), "{}", said(&output));
+}
+
 /// Both streams of a finished run, for messages of failed tests.
 pub fn said(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))

@@ -17,11 +17,13 @@ const PLAIN: Colour = [204, 206, 210];
 /// Faces that meet at less than this are one smooth surface (cosine).
 const SMOOTH: f64 = 0.8;
 /// Distance of the edges of cells, in points of the picture, from which on they begin to show, and from which on they do so fully.
-const EDGES: [f64; 2] = [7.0, 14.0];
+const EDGES: [f64; 2] = [8.0, 15.0];
 
 /// Share of the ink on rims of bodies, and on edges of cells.
 const RIM: f64 = 0.85;
 const CELL: f64 = 0.42;
+/// Steps in which edges of cells begin to show: the file of few shades is smaller.
+const SHADES: f64 = 4.0;
 /// Steps of the colours, about as fine as the eye tells apart, which keeps files small.
 const STEPS: f64 = 40.0;
 
@@ -80,14 +82,52 @@ pub(super) fn draw(canvas: &mut Canvas, model: &Model, pose: &Pose, camera: &Cam
         let [a, b] = ends.map(|own| corner(&own, [0.0; 3]));
         canvas.line([&a, &b], thick, INK, RIM, 2.0);
     }
+    for (ends, distance) in cut_cells(pose, camera) {
+        let [a, b] = ends.map(|own| corner(&own, [0.0; 3]));
+        canvas.line([&a, &b], 0.6 * thick, INK, of_cell(distance), 2.0);
+    }
     for (ends, is_rim, distance) in edges(model, pose, camera, &normals) {
-        let share = if is_rim { RIM } else { CELL * ((distance - EDGES[0]) / (EDGES[1] - EDGES[0])).clamp(0.0, 1.0) };
+        let share = if is_rim { RIM } else { of_cell(distance) };
         if share > 0.0 {
             let [a, b] = ends.map(|at| corner(&pose.vertices[at as usize], [0.0; 3]));
             let width = if is_rim { thick } else { 0.6 * thick };
             canvas.line([&a, &b], width, INK, share, 2.0);
         }
     }
+}
+
+/// Share of the ink on the edge of a cell of this width on the picture.
+fn of_cell(width: f64) -> f64 {
+    let share = ((width - EDGES[0]) / (EDGES[1] - EDGES[0])).clamp(0.0, 1.0);
+    CELL * (SHADES * share).round() / SHADES
+}
+
+/// Width of a convex face on the picture from the area of its sides' triangles and their length: that of a strip of this area and rim.
+fn strip(area: f64, around: f64) -> f64 {
+    if around > 0.0 { 4.0 * area.abs() / around } else { 0.0 }
+}
+
+/// Lines of the section, each once, with the width of the narrower of its cells.
+fn cut_cells(pose: &Pose, camera: &Camera) -> Vec<([Vertex; 2], f64)> {
+    let flat = |own: &Vertex| {
+        let [x, y, _] = camera.place(own.place);
+        [x, y]
+    };
+    let mut found: BTreeMap<[u32; 4], ([Vertex; 2], f64)> = BTreeMap::new();
+    for cell in pose.outlines.chunk_by(|a, b| a.cell == b.cell) {
+        let sides: Vec<[[f64; 2]; 2]> = cell.iter().map(|own| own.ends.each_ref().map(flat)).collect();
+        let ends = || sides.iter().flatten();
+        let centre: [f64; 2] = std::array::from_fn(|c| ends().map(|end| end[c]).sum::<f64>() / ends().count() as f64);
+        let (area, around) = sides.iter().fold((0.0, 0.0), |(area, around), [a, b]| {
+            let double = (a[0] - centre[0]) * (b[1] - centre[1]) - (b[0] - centre[0]) * (a[1] - centre[1]);
+            (area + double.abs() / 2.0, around + (b[0] - a[0]).hypot(b[1] - a[1]))
+        });
+        let width = strip(area, around);
+        for own in cell {
+            found.entry(own.face).and_modify(|known| known.1 = known.1.min(width)).or_insert((own.ends, width));
+        }
+    }
+    found.into_values().filter(|(_, width)| of_cell(*width) > 0.0).collect()
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -179,8 +219,7 @@ fn edges(model: &Model, pose: &Pose, camera: &Camera, normals: &[[f64; 3]]) -> V
             let (area, around) = sides.fold((0.0, 0.0), |(area, around), (a, b)| {
                 (area + (a[0] * b[1] - a[1] * b[0]) / 2.0, around + (b[0] - a[0]).hypot(b[1] - a[1]))
             });
-            // the width of a strip of this area and rim
-            if around > 0.0 { 2.0 * area.abs() / (around / 2.0) } else { 0.0 }
+            strip(area, around)
         })
         .collect();
     let of = |((_, a, b), faces): ((usize, u32, u32), Vec<usize>)| {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use zelus_core::geometry::Shape;
 use zelus_core::io::results::Dataset;
 
 use super::super::skin::{Face, bodies, faces, inside, is_flat};
@@ -19,6 +20,13 @@ pub(super) struct Patch {
     pub is_cell: bool,
 }
 
+/// A cell of a body in space: its shape of first order, and its corners.
+#[derive(Debug, Clone)]
+pub(super) struct Solid {
+    pub shape: Shape,
+    pub corners: Vec<u32>,
+}
+
 /// Rows of a matrix and what is added after it.
 type Move = [[f64; 4]; 3];
 
@@ -32,6 +40,7 @@ pub(super) struct Model {
     moves: Vec<Move>,
     pub patches: Vec<Patch>,
     pub tetrahedra: Vec<[u32; 4]>,
+    pub solids: Vec<Solid>,
     /// Least id of the nodes of each body that is drawn.
     pub names: BTreeMap<usize, usize>,
     pub is_solid: bool,
@@ -57,12 +66,23 @@ impl Model {
             let triangles = triangles.chunks_exact(3).map(|three| [three[0], three[1], three[2]]).collect();
             Patch { body: face.body, ring: face.ring.clone(), triangles, is_cell: true }
         };
+        let cells = data
+            .cells
+            .iter()
+            .zip(&of_cells)
+            .filter(|((shape, _), body)| shape.cell().dim == 3 && names.contains_key(body));
+        let solids = cells.map(|((shape, points), _)| {
+            let shape = shape.linear();
+            Solid { shape, corners: points[..shape.nodes()].to_vec() }
+        });
+        let solids: Vec<Solid> = solids.collect();
         let solid = inside(data, &of_cells, count);
         Self {
             vertices: (0..data.points.len() as u32).map(|node| (node, 0)).collect(),
             moves: vec![STAY],
             patches: all.iter().filter(|face| names.contains_key(&face.body)).map(patch).collect(),
             tetrahedra: names.keys().flat_map(|&body| solid[body].iter().copied()).collect(),
+            solids,
             is_solid: names.keys().any(|&body| !is_flat(data, &of_cells, body)),
             names,
         }
@@ -102,6 +122,9 @@ impl Model {
         self.patches.extend(patches);
         let tetrahedra: Vec<[u32; 4]> = self.tetrahedra.iter().map(|four| four.map(of)).collect();
         self.tetrahedra.extend(tetrahedra);
+        let moved = |own: &Solid| Solid { corners: own.corners.iter().map(|&own| of(own)).collect(), ..own.clone() };
+        let solids: Vec<Solid> = self.solids.iter().map(moved).collect();
+        self.solids.extend(solids);
     }
 
     /// Turns a section about the axis of revolution, which is y, by an angle in degrees.
@@ -183,7 +206,6 @@ impl Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use zelus_core::geometry::Shape;
 
     fn area(model: &Model, points: &[[f64; 3]]) -> f64 {
         let of = |three: &[u32; 3]| {

@@ -1,6 +1,7 @@
 //! A model at a step: places, values, and the section of a cutting plane.
 
 use super::model::Model;
+use super::section::{Outline, outlines};
 
 /// A plane: points with n · x greater than `at` are cut away.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,6 +41,8 @@ impl Vertex {
 pub(super) struct Pose {
     pub vertices: Vec<Vertex>,
     pub section: Vec<[Vertex; 3]>,
+    /// Outlines of cells in the section.
+    pub outlines: Vec<Outline>,
 }
 
 impl Pose {
@@ -66,7 +69,8 @@ impl Pose {
                 cut(&four.map(|own| vertices[own as usize]), &mut section);
             }
         }
-        Self { vertices, section }
+        let outlines = if plane.is_some() { outlines(&model.solids, &vertices) } else { Vec::new() };
+        Self { vertices, section, outlines }
     }
 }
 
