@@ -18,18 +18,19 @@ N_MM = "--unit N/mm²"
 # Name: options of the picture, and deck of the example or (variant, place of the mesh among those of the case).
 EXAMPLES = {
     "lug": (f"--mirror x --mirror z --cut z=0.01 --view 1,-0.35,0.9 --factor 5 --inset 4 {N_MM}", "InSpace.json"),
-    "disc_on_block": (f"--mirror x --inset 5 --factor 1 {N_MM}", "ProjectParameters.json"),
+    "disc_on_block": (f"--mirror x --inset 5 --factor 1 --width 1500 {N_MM}", "ProjectParameters.json"),
     "hertz_line_contact": (f"--mirror x --inset 8 --factor 1 {N_MM}", "ProjectParameters.json"),
     "hertz_sphere": (f"--mirror x --mirror y --cut y=0.001 --factor 1 --inset 6 {N_MM}", "ProjectParameters.json"),
-    "shrink_fit": (f"--mirror x --mirror y --factor 1 {N_MM}", "ProjectParameters.json"),
+    "gear_pair": (f"--factor 1 --inset 12 {N_MM}", "ProjectParameters.json"),
+    "shrink_fit": (f"--mirror x --mirror y --factor 1 --width 1200 {N_MM}", "ProjectParameters.json"),
     "brake_disc": ("--revolve 270 --field TEMPERATURE --factor 1", "ProjectParameters.json"),
     "bars_in_thermal_contact": ("--field TEMPERATURE", "ProjectParameters.json"),
 }
 CASES = {
     "tube_torsion": ("--factor 5 --view -0.5,-1,0.8", ("ALM", 2)),
-    "shaft_pull_out": ("--revolve 270 --factor 20", ("ALM", 1)),
+    "shaft_pull_out": ("--revolve 270 --factor 20 --width 1500", ("ALM", 1)),
     "hertz_in_space": ("--mirror x --mirror y --cut y=0.001 --factor 1 --inset 4", ("ALM", 0)),
-    "press_fit": ("--mirror x --mirror y --factor 1", (0, 1)),
+    "press_fit": ("--mirror x --mirror y --factor 1 --width 1200", (0, 1)),
     "cattaneo_mindlin": ("--inset 8 --factor 1", (0, 1)),
     "ironing": ("--step all --width 800 --factor 1", ("μ = 0.3, 30 steps", 1)),
     "two_arches": ("--factor 1", (0, 0)),
@@ -48,14 +49,14 @@ ASSEMBLIES = {
     "cyclic_sector": f"--view -0.3,-0.5,1 {N_MM}",
     "orthotropic_tube": "--mirror y --field DISPLACEMENT --unit mm --view 0.6,-1,0.5",
     "rigid_body": f"--view 1,-0.5,0.35 {N_MM}",
-    "clearance": f"--view -0.2,-0.6,1 {N_MM}",
+    "clearance": f"--view -0.2,-0.6,1 --width 1200 {N_MM}",
     "ground_springs": "--field DISPLACEMENT --unit mm --view -0.5,-1,0.8",
     "cylindrical_support": f"--view 0.4,-1,0.35 {N_MM}",
     "hardening": "--mirror x --mirror y --field EQUIVALENT_PLASTIC_STRAIN",
     "creep": "--mirror x --mirror y --field EQUIVALENT_CREEP_STRAIN",
     "spherical_support": f"--view -0.2,-1,0.3 --mirror y {N_MM}",
-    "pyramids": f"--view -0.6,-1,0.5 {N_MM}",
-    "bolt": f"--view -0.3,-1,0.45 --factor 20 {N_MM}",
+    "pyramids": f"--view -0.6,-1,0.5 --width 1400 {N_MM}",
+    "bolt": f"--view -0.3,-1,0.45 --factor 20 --width 1400 {N_MM}",
 }
 VTU = {"python_module": "vtu_output_process", "Parameters": {"model_part_name": "", "output_path": "pictures"}}
 

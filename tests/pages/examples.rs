@@ -46,9 +46,11 @@ impl Measure {
         let quantity = self.largest.as_ref().or(self.edge.as_ref()).ok_or("a measure needs `largest` or `edge`")?;
         let nodes = read_nodes(&folder.join(mesh));
         let values = results.nodal(quantity, step);
-        let counts = |id: &u64| self.y.is_none_or(|y| (nodes[id][1] - y).abs() < 1e-9);
+        // reference nodes of couplings are not in the file
+        let place = |id: &u64| nodes.get(id).copied().unwrap_or([f64::NAN; 3]);
+        let counts = |id: &u64| self.y.is_none_or(|y| (place(id)[1] - y).abs() < 1e-9);
         let mut along: Vec<(f64, f64)> =
-            values.iter().filter(|(id, _)| counts(id)).map(|(id, v)| (nodes[id][0], v * self.factor)).collect();
+            values.iter().filter(|(id, _)| counts(id)).map(|(id, v)| (place(id)[0], v * self.factor)).collect();
         along.sort_by(|a, b| a.0.total_cmp(&b.0));
         let largest = along.iter().map(|(_, v)| *v).fold(f64::NEG_INFINITY, f64::max);
         if self.largest.is_some() {
