@@ -130,12 +130,14 @@ pub struct Pair {
     pub adjusted: bool,
     /// Whether surfaces that are in contact stay so, free to slide.
     pub stays: bool,
+    /// Overclosure and pressure of soft contact, growing from row to row; none of hard contact. All pairs that touch have the same.
+    pub soft: Vec<[f64; 2]>,
 }
 
 impl Pair {
     /// Surfaces that touch without friction.
     pub fn of(slave: String, master: String) -> Self {
-        Self { tied: false, slave, master, friction: 0.0, adjusted: false, stays: false }
+        Self { tied: false, slave, master, friction: 0.0, adjusted: false, stays: false, soft: Vec::new() }
     }
 }
 

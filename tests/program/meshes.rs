@@ -57,6 +57,27 @@ fn blocks_of_abaqus_are_pressed_together_without_a_hand_s_work() {
     }
 }
 
+/// ANALYTIC: the same blocks with soft contact: the upper one goes down further by the overclosure of the pressure, 10.
+#[test]
+fn soft_contact_of_abaqus_gives_way() {
+    let blocks = std::fs::read_to_string(data("blocks.inp")).unwrap();
+    let behaviors = [("LINEAR\n2.0e4", 5e-4), ("TABULAR\n0.0, -1.0e-3\n8.0, 0.0\n12.0, 1.0e-3", 5e-4), ("HARD", 0.0)];
+    for (behavior, depth) in behaviors {
+        let card = format!("*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE={behavior}\n*FRICTION");
+        let scratch = tempfile::tempdir().unwrap();
+        std::fs::write(scratch.path().join("blocks.inp"), blocks.replacen("*FRICTION", &card, 1)).unwrap();
+        let output = zelus(scratch.path(), &["new", "--from", "blocks.inp", "-o", "deck"]);
+        assert!(output.status.success(), "{}", said(&output));
+        let simulation = solved(&scratch.path().join("deck/ProjectParameters.json"));
+        let part = &simulation.model().parts["Structure"];
+        let displacement = simulation.field("DISPLACEMENT").unwrap();
+        for (at, point) in part.nodes.initial.iter().enumerate().filter(|(_, point)| point[2] > 1.5) {
+            let found = displacement[3 * at + 2];
+            assert!((found + 0.02 + depth).abs() < 1e-8, "{behavior}: {found} at {point:?}");
+        }
+    }
+}
+
 #[test]
 fn pairs_are_found_where_a_file_names_none() {
     let scratch = start("solids_1_41.msh");

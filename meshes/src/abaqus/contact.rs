@@ -22,6 +22,7 @@ struct Interaction {
     is_tied: bool,
     stays: bool,
     is_rough: bool,
+    soft: Vec<[f64; 2]>,
 }
 
 impl Model {
@@ -51,7 +52,8 @@ impl Model {
                     let own = all.entry(under_way.clone()).or_default();
                     own.is_tied = card.says("PRESSURE-OVERCLOSURE", "TIED");
                     own.stays = card.get("NO SEPARATION").is_some();
-                    self.behavior(card);
+                    let soft = self.behavior(card);
+                    own.soft = self.tolerate(soft).unwrap_or_default();
                 }
                 _ => {}
             }
@@ -94,10 +96,12 @@ impl Model {
                 let slave = model.surface(card, row.get(0), row.line)?;
                 let other = row.get(1);
                 let master = if other.is_empty() { slave.clone() } else { model.surface(card, other, row.line)? };
-                model.mesh.pairs.push(Pair { tied, slave, master, friction, adjusted, stays });
+                let soft = if tied { Vec::new() } else { law.soft.clone() };
+                model.mesh.pairs.push(Pair { tied, slave, master, friction, adjusted, stays, soft });
                 Ok(())
             });
         }
+        self.keep_soft(statements);
     }
 
     /// Sides of a sector: those of the tie that the card names, around the axis of its two points.
@@ -189,13 +193,47 @@ impl Model {
         Ok(())
     }
 
-    fn behavior(&mut self, card: &Card) {
+    /// Overclosures and pressures of soft contact; none of hard contact.
+    fn behavior(&mut self, card: &Card) -> Result<Vec<[f64; 2]>> {
         card.is_read.set(true);
         card.says("PRESSURE-OVERCLOSURE", "HARD");
         if card.says("PRESSURE-OVERCLOSURE", "LINEAR") {
-            let fact = "PRESSURE-OVERCLOSURE=LINEAR: contact is hard here, without the penetration of a stiffness";
-            self.report.push(Diagnostic::note("not-taken-over", fact).at(card.place()));
+            let stiffness =
+                card.rows.first().map(|row| card.numbers(row)).transpose()?.and_then(|own| own.first().copied());
+            return Ok(stiffness.filter(|own| *own > 0.0).map(|own| vec![[0.0, 0.0], [1.0, own]]).unwrap_or_default());
         }
+        if !card.says("PRESSURE-OVERCLOSURE", "TABULAR") {
+            return Ok(Vec::new());
+        }
+        let mut rows = Vec::new();
+        for row in &card.rows {
+            let Some(&[pressure, depth]) = card.numbers(row)?.first_chunk::<2>() else {
+                return Err(card.wrong_at(
+                    row.line,
+                    "a row of PRESSURE-OVERCLOSURE=TABULAR has a pressure and an overclosure".to_owned(),
+                ));
+            };
+            rows.push([depth, pressure]);
+        }
+        Ok(rows)
+    }
+
+    /// Leaves soft contact out where a deck cannot have it: its pairs differ, or stand beside ties.
+    fn keep_soft(&mut self, statements: &[Statement]) {
+        let mut touching = self.mesh.pairs.iter().filter(|pair| !pair.tied);
+        let first = touching.next().map(|pair| pair.soft.clone()).unwrap_or_default();
+        let alike = touching.all(|pair| pair.soft == first);
+        let is_alone = self.mesh.pairs.iter().all(|pair| !pair.tied && !pair.stays);
+        let is_soft = self.mesh.pairs.iter().any(|pair| !pair.soft.is_empty());
+        if !is_soft || alike && is_alone {
+            return;
+        }
+        self.mesh.pairs.iter_mut().for_each(|pair| pair.soft.clear());
+        let card = statements.iter().map(|own| &own.card).find(|card| card.keyword == "SURFACE BEHAVIOR");
+        let why = if alike { "beside ties and NO SEPARATION" } else { "since pairs differ in it" };
+        let fact = format!("the pressure by the overclosure is left out {why}: contact is hard here");
+        let note = Diagnostic::note("not-taken-over", fact);
+        self.report.push(card.map(|card| card.place()).into_iter().fold(note, Diagnostic::at));
     }
 }
 

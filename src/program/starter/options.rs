@@ -40,7 +40,10 @@ impl Options {
     /// # Errors
     /// A name that is not known, or a formulation that does not go with friction or ties.
     pub(super) fn formulation(&self, mesh: &Mesh) -> Result<Formulation> {
-        let Some(name) = &self.formulation else { return Ok(Formulation::default()) };
+        let is_soft = mesh.pairs.iter().any(|pair| !pair.soft.is_empty());
+        let Some(name) = self.formulation.as_deref().or(is_soft.then_some("penalty")) else {
+            return Ok(Formulation::default());
+        };
         let friction = mesh.pairs.iter().any(|pair| !pair.tied && pair.friction > 0.0);
         Formulation::find(name, friction, mesh.pairs.iter().any(|pair| pair.tied || pair.stays))
     }

@@ -310,6 +310,10 @@ pub(super) fn contact(pairs: &[&Pair], module: &str, kind: &str, friction: bool,
         parameters
             .push(format!("\"friction_coefficients\": {}", by_pair(pairs, |pair| format!("{:?}", pair.friction))));
     }
+    let soft = pairs.first().filter(|pair| module == "penalty_contact_process" && !pair.soft.is_empty());
+    if let Some(pair) = soft {
+        parameters.push(format!("\"pressure_overclosure\": {{\"law\": \"table\", \"rows\": {:?}}}", pair.soft));
+    }
     let stays: Vec<String> = (0..pairs.len()).filter(|&at| pairs[at].stays).map(|at| format!("\"{at}\"")).collect();
     if !stays.is_empty() {
         parameters.push(format!("\"no_separation\": [{}]", stays.join(", ")));
