@@ -37,6 +37,7 @@ const GROUPS: [(&str, &[&str]); 5] = [
             "penalty_adaptation",
             "contact_conductance",
             "wear_law",
+            "rigid_shape",
         ],
     ),
     (

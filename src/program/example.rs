@@ -50,6 +50,7 @@ pub(super) fn example(kind: &str, entry: &Entry) -> Result<Option<String>> {
         "contact_conductance" => at("Parameters.conductance", json!([settings])),
         "overclosure_law" => at("Parameters.pressure_overclosure", settings),
         "wear_law" => at("Parameters.wear_of_slave", json!([settings])),
+        "rigid_shape" => at("Parameters.shape", settings),
         "penalty_adaptation" => {
             at("Parameters.advance_ALM_parameters", json!({ "adapt_penalty": true, "adaptation_rule": name }))
         }

@@ -120,6 +120,16 @@ impl<'a> Deck<'a> {
         self
     }
 
+    /// The processes so far.
+    pub fn processes_mut(&mut self) -> &mut [Value] {
+        &mut self.processes
+    }
+
+    /// Parameters of the process that was added last.
+    pub fn last_process(&mut self) -> &mut Value {
+        &mut self.processes.last_mut().expect("a process")["Parameters"]
+    }
+
     /// A part with nodes alone; its name below the root part.
     pub fn nodes(&mut self, wanted: impl Fn(Vec3) -> bool) -> String {
         self.part(self.grid.nodes_where(wanted))
@@ -304,6 +314,11 @@ impl Ran {
         found.unwrap_or_else(|| panic!("no {name:?} among {numbers:?}")).1
     }
 
+    /// A number of the report of the last step by name.
+    pub fn last_number(&self, name: &str) -> f64 {
+        self.number(name, self.report.steps.len() - 1)
+    }
+
     /// Times that were written.
     pub fn times(&self) -> Vec<f64> {
         self.json["TIME"].as_array().expect("TIME").iter().filter_map(Value::as_f64).collect()
@@ -313,6 +328,12 @@ impl Ran {
     pub fn vector(&self, name: &str, node: usize, step: usize) -> Vec3 {
         let series = &self.json[format!("NODE_{}", node + 1)];
         ["X", "Y", "Z"].map(|axis| series[format!("{name}_{axis}")][step].as_f64().expect("a number"))
+    }
+
+    /// A scalar at a node (from 0) at the end.
+    pub fn scalar(&self, name: &str, node: usize) -> f64 {
+        let series = self.json[format!("NODE_{}", node + 1)][name].as_array().expect("a series");
+        series.last().and_then(Value::as_f64).expect("a number")
     }
 
     /// A vector at a node (from 0) at the end.

@@ -16,6 +16,7 @@ mod periodic;
 mod plastic;
 mod resultants;
 mod rigid_bodies;
+mod rigid_shapes;
 mod rubber;
 mod springs;
 mod stress_results;

@@ -219,6 +219,7 @@ impl Setting {
             entry,
             slave,
             master,
+            exact: Vec::new(),
             pairs: vec![pair],
             nodes: (0..count as u32).collect(),
             slaves: states.all().collect(),

@@ -9,6 +9,7 @@ pub mod laws;
 pub mod stress_invariant;
 pub mod elements;
 pub mod conditions;
+pub mod rigid_shapes;
 mod processes;
 pub mod solvers;
 #[cfg(test)]

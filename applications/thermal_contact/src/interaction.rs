@@ -161,7 +161,7 @@ fn work_of_friction(part: &ModelPart) -> impl Fn(usize) -> f64 {
 fn share_of_slave(part: &ModelPart, facets: [&Facet; 2]) -> f64 {
     let columns = Columns::of(part);
     let effusivity = |facet: &Facet| -> Option<f64> {
-        let properties = properties_of_heat(part, facet.element)?;
+        let properties = properties_of_heat(part, facet.element).filter(|_| !facet.is_rigid())?;
         let number = |column: Option<&'static str>| column.map_or(Some(1.0), |name| properties.number(name));
         let product = number(columns.diffusion)? * number(columns.density)? * number(columns.specific_heat)?;
         Some(product.sqrt()).filter(|effusivity| *effusivity > 0.0)
@@ -190,8 +190,8 @@ impl Interaction for ThermalContact {
         self.keys = keys;
         self.blocks.clear();
         let unknown = Columns::of(part).unknown;
-        for ((slave, master), (pairs, nodes)) in
-            group_by_shapes(self.settings.surfaces.interfaces(), pairs, |(key, _)| *key)
+        for ((slave, master, _), (pairs, nodes)) in
+            group_by_shapes(self.settings.surfaces.interfaces(), pairs, false, |(key, _)| *key)
         {
             let entry = require_kind(EntityRole::Condition, &condition_name(STEM, slave, master))?;
             let points = pairs.into_iter().map(|(_, points)| points).collect();

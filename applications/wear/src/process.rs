@@ -1,7 +1,7 @@
 //! `wear_process`: removes the worn depth after each accepted step.
 
 use zelus_contact_structural_mechanics::FacingSurfaces;
-use zelus_contact_structural_mechanics::interface::Roles;
+use zelus_contact_structural_mechanics::interface::{Facet, Roles};
 use zelus_contact_structural_mechanics::variables::CONTACT_STATUS;
 use zelus_core::assembly::System;
 use zelus_core::diagnostics::{Diagnostic, Report};
@@ -134,8 +134,14 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let speed = Some(settings.get("sliding_speed")?).filter(|speed| speed.is_given());
     let interval = Interval::from_node(settings.get("interval")?)?;
     let root = settings.get_str("model_part_name")?.to_owned();
+    let surfaces = FacingSurfaces::new(&settings, request, false, false)?;
+    let has_shape = surfaces.interfaces().iter().any(|own| own.facets.iter().any(Facet::is_rigid));
+    if has_shape && !laws[1].is_empty() {
+        let problem = settings.error("wear_of_master", "rigid-shape-wear", "a master that wears is a rigid shape");
+        return Err(problem.remedy("give the wear to \"wear_of_slave\", or mesh the tool").into());
+    }
     let reading = SlidingSettings {
-        surfaces: FacingSurfaces::new(&settings, request, false, false)?,
+        surfaces,
         speed: speed.map(ScalarValue::from_node).transpose()?,
         around: settings.get_bool("axisymmetric")?,
     };

@@ -42,6 +42,9 @@ pub struct FacetShape {
     pub affine: bool,
     /// Whether it is of second order, with nodes beside its corners.
     pub curved: bool,
+    /// Whether its last node is an apex beside it, with which points off the facet are combinations of its nodes: those of an
+    /// [`ExactFacet`](super::ExactFacet). On the facet itself the shape function of the apex is zero.
+    pub apex: bool,
     /// Its linear sub-facets, each by its nodes.
     pub sub_facets: &'static [&'static [usize]],
     /// Local coordinates of its centre.
@@ -56,6 +59,10 @@ pub struct FacetShape {
 pub static LINE_2: FacetShape = FacetShape::new(Shape::Line2);
 /// Line with a node in the middle.
 pub static LINE_3: FacetShape = FacetShape::new(Shape::Line3);
+/// Line with two nodes and an apex.
+pub static LINE_2_APEX: FacetShape = FacetShape::with_apex(Shape::Line2);
+/// Triangle with three nodes and an apex.
+pub static TRIANGLE_3_APEX: FacetShape = FacetShape::with_apex(Shape::Tri3);
 /// Triangle with corners (0,0), (1,0), (0,1).
 pub static TRIANGLE_3: FacetShape = FacetShape::new(Shape::Tri3);
 /// Triangle with nodes in the middle of its edges.
@@ -69,13 +76,13 @@ pub static QUADRILATERAL_9: FacetShape = FacetShape::new(Shape::Quad9);
 
 impl fmt::Debug for FacetShape {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?}", self.shape)
+        write!(f, "{:?}{}", self.shape, if self.apex { " with an apex" } else { "" })
     }
 }
 
 impl PartialEq for FacetShape {
     fn eq(&self, other: &Self) -> bool {
-        self.shape == other.shape
+        (self.shape, self.apex) == (other.shape, other.apex)
     }
 }
 
@@ -116,10 +123,25 @@ impl FacetShape {
             space,
             affine: nodes == space,
             curved: nodes > corners,
+            apex: false,
             sub_facets: sub_facets(shape),
             centre: [cell.centre[0], cell.centre[1]],
             cell_size: cell.size(),
             points: cell.points,
+        }
+    }
+
+    const fn with_apex(shape: Shape) -> Self {
+        let own = Self::new(shape);
+        Self { nodes: own.nodes + 1, apex: true, ..own }
+    }
+
+    /// The same shape with an apex; `None` where facets of an exact surface do not have it.
+    pub fn and_apex(&self) -> Option<&'static Self> {
+        match self.shape {
+            Shape::Line2 => Some(&LINE_2_APEX),
+            Shape::Tri3 => Some(&TRIANGLE_3_APEX),
+            _ => None,
         }
     }
 
@@ -159,9 +181,11 @@ impl FacetShape {
     pub fn write_values<T: Real>(&self, xi: [T; 2], out: &mut Nodal<T>) {
         let points = self.points;
         match self.shape {
-            Shape::Line2 => out.refill(2, |i| product(&points[i], &xi[..1], linear)),
+            Shape::Line2 => {
+                out.refill(self.nodes, |i| if i < 2 { product(&points[i], &xi[..1], linear) } else { T::zero() })
+            }
             Shape::Line3 => out.refill(3, |i| product(&points[i], &xi[..1], quadratic)),
-            Shape::Tri3 => out.refill(3, |i| barycentric(&xi, i)),
+            Shape::Tri3 => out.refill(self.nodes, |i| if i < 3 { barycentric(&xi, i) } else { T::zero() }),
             Shape::Tri6 => {
                 let l: [T; 3] = std::array::from_fn(|i| barycentric(&xi, i));
                 out.refill(
@@ -316,7 +340,7 @@ impl FacetShape {
 
     /// Whether the second derivatives are the same everywhere on the facet.
     pub fn has_constant_bend(&self) -> bool {
-        matches!(self.shape, Shape::Line3 | Shape::Tri6) || self.nodes == self.corners
+        matches!(self.shape, Shape::Line3 | Shape::Tri6) || !self.curved
     }
 
     /// The search of [`FacetShape::closest_point`]: local coordinates and the derivatives there.
@@ -360,13 +384,13 @@ impl FacetShape {
 }
 
 /// The factors of three vectors that add up to another, by Cramer's rule.
-fn solve([a, b, c]: &[[f64; 3]; 3], sum: [f64; 3]) -> [f64; 3] {
+pub(super) fn solve([a, b, c]: &[[f64; 3]; 3], sum: [f64; 3]) -> [f64; 3] {
     let whole = 1.0 / dot(*a, cross(*b, *c));
     [dot(sum, cross(*b, *c)) * whole, dot(*a, cross(sum, *c)) * whole, dot(*a, cross(*b, sum)) * whole]
 }
 
 /// The first two rows of the inverse of the matrix with these columns.
-fn rows([a, b, c]: &[[f64; 3]; 3]) -> [[f64; 3]; 2] {
+pub(super) fn rows([a, b, c]: &[[f64; 3]; 3]) -> [[f64; 3]; 2] {
     let (first, second) = (cross(*b, *c), cross(*c, *a));
     let whole = 1.0 / dot(*a, first);
     [first.map(|x| x * whole), second.map(|x| x * whole)]

@@ -16,6 +16,7 @@ use super::nodes::Nodes;
 use super::owner::Owner;
 use super::process_info::ProcessInfo;
 use super::properties::{Properties, PropertyValue};
+use super::rigid_facet::RigidFacet;
 use super::slave_nodes::SlaveNodes;
 use super::sub_part::SubPart;
 use super::table::Table;
@@ -53,6 +54,9 @@ pub struct ModelPart {
     /// saved run.
     #[serde(skip)]
     pub interface_surfaces: Vec<InterfaceSurface>,
+    /// Facets of rigid shapes, by the index of their condition. As those surfaces, they are in no saved run.
+    #[serde(skip)]
+    pub rigid_facets: BTreeMap<u32, RigidFacet>,
     /// Elements as the mesh gives them.
     pub elements: EntityTable,
     /// Conditions as the mesh gives them.
@@ -252,6 +256,7 @@ impl ModelPart {
             nodes: self.nodes.pick(nodes),
             slave_nodes: self.slave_nodes.kept(&new_nodes),
             interface_surfaces: Vec::new(),
+            rigid_facets: BTreeMap::new(),
             elements: self.elements.pick(elements, &new_nodes),
             conditions: self.conditions.pick(conditions, &new_nodes),
             geometries: Geometries::default(),

@@ -82,7 +82,8 @@ pub(crate) fn prepare(
                 *count += 1;
             }
             let side = &mut of_sides[usize::from(facet.role == Roles::Master)];
-            *side = side.or(own.map(|own| (own, facet.properties)));
+            // A rigid shape has no material.
+            *side = side.or(own.filter(|_| !facet.is_rigid()).map(|own| (own, facet.properties)));
             // The coefficient of a pair is that of its slave nodes.
             if facet.role != Roles::Master {
                 slaves += 1;

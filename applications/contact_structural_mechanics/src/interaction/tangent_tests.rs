@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use zelus_core::entities::{LocalSystems, LocalUnknown, Request, require_kind};
-use zelus_core::geometry::{Shape, reversed};
+use zelus_core::geometry::{ExactFacet, ExactSurface, Shape, reversed};
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{EntityRole, ModelPart, Nodes};
-use zelus_core::vector3::add;
+use zelus_core::vector3::{add, norm};
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
 use crate::active_set::{Rules, find_tangents};
@@ -47,7 +47,7 @@ fn facet(nodes: &[u32], role: Roles) -> Facet {
         4 => Shape::Quad4,
         _ => Shape::Quad8,
     };
-    Facet { nodes: nodes.to_vec(), shape, source: FacetSource::Face(0), element: 0, properties: 0, role }
+    Facet { nodes: nodes.to_vec(), shape, source: FacetSource::Face(0), element: 0, properties: 0, role, exact: None }
 }
 
 /// Places and facets of two by two quadrilaterals of eight nodes, numbered on from `first`.
@@ -98,13 +98,74 @@ fn surfaces(space: usize, second_order: bool) -> (Vec<[f64; 3]>, Interface) {
     (places, Interface { facets, nodes, ..Interface::default() })
 }
 
+/// A master that stands for a ball, in the plane for a circle, of radius `R` and centre `(0, 0, R)`, with an apex beside the centre.
+const R: f64 = 4.0;
+
+/// The same slave below facets of a rigid ball; all its nodes are free to move.
+fn below_a_ball(space: usize) -> (Vec<[f64; 3]>, Interface) {
+    let (mut places, mut interface) = surfaces(space, false);
+    let up = space - 1;
+    let centre = if space == 2 { [0.0, R, 0.0] } else { [0.0, 0.0, R] };
+    let corner = |[x, y]: [f64; 2]| {
+        let height = R - (R * R - x * x - y * y).sqrt() - 0.2;
+        if space == 2 { [x, height, 0.0] } else { [x, y, height] }
+    };
+    let mut apex = centre;
+    (apex[0], apex[up]) = (0.2, R + 0.3);
+    let surface = ExactSurface {
+        name: "ball",
+        level: |&[x, y, z, radius], at| {
+            let way = [at[0] - x, at[1] - y, at[2] - z];
+            let size = norm(way);
+            (size - radius, way.map(|c| c / size))
+        },
+        numbers: [
+            centre[0],
+            centre[1] - if space == 2 { 0.2 } else { 0.0 },
+            centre[2] - if space == 3 { 0.2 } else { 0.0 },
+            R,
+        ],
+    };
+    let first = places.len() as u32;
+    let count = if space == 2 { 3 } else { 9 };
+    let at = |n: u32| {
+        let [i, j] = [n % 3, n / 3].map(|k| 1.5 * f64::from(k) - 1.5);
+        corner(if space == 2 { [i, 0.0] } else { [i, j] })
+    };
+    places.extend((0..count).map(at));
+    places.push(apex);
+    let (quads, lines) = ([0_u32, 1, 3, 4], [0_u32, 1]);
+    let masters: Vec<Vec<u32>> = if space == 2 {
+        lines.iter().map(|&n| vec![n, n + 1]).collect()
+    } else {
+        quads.iter().flat_map(|&n| [vec![n, n + 3, n + 1], vec![n + 1, n + 3, n + 4]]).collect()
+    };
+    interface.facets.retain(|facet| facet.role == Roles::Slave);
+    for own in masters {
+        let nodes: Vec<u32> = own.iter().map(|n| first + n).collect();
+        let corners = std::array::from_fn(|k| own.get(k).map_or([0.0; 3], |&n| at(n)));
+        let exact = ExactFacet { surface, corners, apex };
+        interface.facets.push(Facet { exact: Some(Arc::new((exact, first + count))), ..facet(&nodes, Roles::Master) });
+    }
+    interface.nodes = (0..places.len() as u32).collect();
+    (places, interface)
+}
+
 impl Contact {
     fn new(
         formulation: &'static Formulation,
         (space, second_order): (usize, bool),
         augmentation: Augmentation,
     ) -> Self {
-        let (places, interface) = surfaces(space, second_order);
+        Self::of(formulation, space, surfaces(space, second_order), augmentation)
+    }
+
+    fn of(
+        formulation: &'static Formulation,
+        space: usize,
+        (places, interface): (Vec<[f64; 3]>, Interface),
+        augmentation: Augmentation,
+    ) -> Self {
         let mut noise = Noise::new(5);
         let count = places.len();
         let mut part = ModelPart::new("interface");
@@ -170,8 +231,8 @@ impl Contact {
             .flat_map(|slave| of_role(Roles::Master).map(move |master| PairKey { interface: 0, slave, master }))
             .map(|key| Pair::new(key, [[0.0; 3]; 2]))
             .collect();
-        for ((slave, master), (pairs, nodes)) in
-            group_by_shapes(std::slice::from_ref(&self.interface), pairs, |p| p.key)
+        for ((slave, master, _), (pairs, nodes)) in
+            group_by_shapes(std::slice::from_ref(&self.interface), pairs, true, |p| p.key)
         {
             let entry =
                 require_kind(EntityRole::Condition, &condition_name(formulation.condition, slave, master)).unwrap();
@@ -181,10 +242,13 @@ impl Contact {
                 let has_owners = formulation.multiplier.is_unknown();
                 let owners = slaves.iter().filter(|_| has_owners).map(|slave| self.states.owner(*slave)).collect();
                 let (bodies, states) = (Arc::default(), Arc::default());
+                let of_masters = pairs.iter().map(|pair| &self.interface.facets[pair.key.master as usize]);
+                let exact = of_masters.filter_map(|facet| facet.exact.clone()).collect();
                 self.blocks.push((formulation.block)(PairRequest {
                     entry,
                     slave,
                     master,
+                    exact,
                     pairs,
                     nodes,
                     slaves,
@@ -326,15 +390,18 @@ fn place((node, unknown): (u32, LocalUnknown)) -> Place {
 }
 
 fn check(formulation: &str, of: (usize, bool), augmentation: Augmentation) {
-    let space = of.0;
-    let mut contact = Contact::new(find_formulation(formulation).unwrap(), of, augmentation);
+    let contact = Contact::new(find_formulation(formulation).unwrap(), of, augmentation);
+    check_contact(contact, &format!("{formulation} {of:?} {augmentation:?}"), of.0);
+}
+
+fn check_contact(mut contact: Contact, what: &str, space: usize) {
     let (mut tangent, mut forces) = (BTreeMap::<(Place, Place), f64>::new(), BTreeMap::<Place, f64>::new());
     contact.each(Request::Both, |row, column, value| match column {
         Some(column) => *tangent.entry((place(row), place(column))).or_default() += value,
         None => *forces.entry(place(row)).or_default() += value,
     });
     let largest = tangent.values().fold(0.0_f64, |most, value| most.max(value.abs()));
-    assert!(largest > 0.1 && forces.len() > 10, "{formulation} {of:?}: {largest}");
+    assert!(largest > 0.1 && forces.len() > 10, "{what}: {largest}");
     for node in 0..contact.part.nodes.len() {
         for c in 0..space {
             let mut slopes: BTreeMap<Place, f64> = BTreeMap::new();
@@ -351,7 +418,7 @@ fn check(formulation: &str, of: (usize, bool), augmentation: Augmentation) {
                 let exact = tangent.get(&(row, column)).copied().unwrap_or(0.0);
                 assert!(
                     (slope - exact).abs() < 2e-7 * largest,
-                    "{formulation} {of:?} {augmentation:?}: {row:?} by {column:?}: {slope} {exact} of {largest}"
+                    "{what}: {row:?} by {column:?}: {slope} {exact} of {largest}"
                 );
             }
         }
@@ -370,6 +437,18 @@ fn tangents_of_curved_interfaces_match_differences() {
             }
         }
         check("PerturbedLagrangianContactFrictionless", (space, false), Augmentation::Pair);
+    }
+}
+
+/// The exact surface of a rigid shape moves with the nodes of its facets and with their apex, rotations among them.
+#[test]
+fn tangents_below_a_rigid_shape_match_differences() {
+    for space in [2, 3] {
+        for name in ["ALMContactFrictionless", "ALMContactFrictional"] {
+            let contact = Contact::of(find_formulation(name).unwrap(), space, below_a_ball(space), Augmentation::Node);
+            assert!(contact.blocks.iter().all(|block| block.nodes(0).contains(&(contact.part.nodes.len() as u32 - 1))));
+            check_contact(contact, &format!("{name} {space}"), space);
+        }
     }
 }
 

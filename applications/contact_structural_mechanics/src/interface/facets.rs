@@ -1,6 +1,7 @@
 //! The facets of a contact interface, from the parts a deck names or from the skin of the bodies.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 use zelus_core::Result;
@@ -8,7 +9,7 @@ use zelus_core::diagnostics::{Diagnostic, Report, counted, unfit};
 use zelus_core::geometry::mapping::{domain_size, unit_normal};
 use zelus_core::geometry::{Shape, reversed};
 use zelus_core::model::flags::INTERFACE;
-use zelus_core::model::{ModelPart, ScalarVariable, SubPart};
+use zelus_core::model::{ModelPart, RigidFacet, ScalarVariable, SubPart};
 use zelus_core::vector3::{add, dot, norm, scale, sub};
 use zelus_structural_mechanics::laws::representative_young;
 
@@ -215,6 +216,12 @@ fn assign_roles(
 ) -> Result<()> {
     for interface in interfaces {
         let Some(list) = slaves.get(&interface.key).filter(|list| !list.is_empty()) else {
+            if interface.facets.iter().any(Facet::is_rigid) {
+                let fact = format!("contact pair \"{}\" has a rigid shape and names no slave side", interface.key);
+                let remedy =
+                    "name the surfaces of the deformable bodies in \"assume_master_slave\": a rigid shape is a master";
+                return Err(Diagnostic::error("rigid-shape-sides", fact).remedy(remedy).into());
+            }
             interface.open = true;
             continue;
         };
@@ -232,6 +239,13 @@ fn assign_roles(
         for facet in &mut interface.facets {
             let slave = facet.nodes.iter().all(|&n| part.nodes.flags.is(SLAVE, n as usize));
             facet.role = if slave { Roles::Slave } else { Roles::Master };
+        }
+        if interface.facets.iter().any(|facet| facet.is_rigid() && facet.role == Roles::Slave) {
+            let fact =
+                format!("{} of contact pair \"{}\" is a rigid shape on the slave side", list.join(", "), interface.key);
+            let remedy =
+                "name the surface of the deformable body in \"assume_master_slave\": a rigid shape is a master";
+            return Err(Diagnostic::error("rigid-shape-sides", fact).remedy(remedy).into());
         }
         for (role, word) in [(Roles::Slave, "slave"), (Roles::Master, "master")] {
             if !interface.facets.iter().any(|f| f.role == role) {
@@ -378,6 +392,11 @@ fn mutual(interfaces: &[Interface]) -> Vec<Diagnostic> {
 fn facets_of(part: &ModelPart, sub: &SubPart, faces: &Faces, found: &mut Vec<Facet>) -> Result<()> {
     let mut from_conditions = false;
     for &at in &sub.conditions {
+        if let Some(rigid) = part.rigid_facets.get(&at) {
+            from_conditions = true;
+            found.push(rigid_facet(part, at, rigid));
+            continue;
+        }
         if part.conditions.kinds[at as usize].cell.is_none_or(|shape| shape.dim() == 0) {
             continue;
         }
@@ -402,6 +421,20 @@ fn facets_of(part: &ModelPart, sub: &SubPart, faces: &Faces, found: &mut Vec<Fac
     let mut inside = vec![false; part.nodes.len()];
     sub.nodes.iter().for_each(|&n| inside[n as usize] = true);
     outer_facets(part, faces, |node| inside[node as usize], found)
+}
+
+/// A facet of a rigid shape, whose nodes go round as the shape says.
+fn rigid_facet(part: &ModelPart, at: u32, rigid: &RigidFacet) -> Facet {
+    let shape = part.conditions.kinds[at as usize].cell.expect("facets of rigid shapes are lines and triangles");
+    Facet {
+        nodes: part.conditions.nodes(at).to_vec(),
+        shape,
+        source: FacetSource::Rigid(at),
+        element: 0,
+        properties: part.conditions.properties[at as usize],
+        role: Roles::Open,
+        exact: rigid.exact.map(Arc::new),
+    }
 }
 
 /// A facet whose nodes are turned so that its normal leaves the element.
@@ -430,7 +463,7 @@ fn facet(part: &ModelPart, face: &ElementFace, mut nodes: Vec<u32>, source: Face
         let ids: Vec<String> = nodes.iter().map(|&n| part.nodes.ids[n as usize].to_string()).collect();
         let of = match source {
             FacetSource::Condition(at) => format!("condition {} on element {id}", part.conditions.ids[at as usize]),
-            FacetSource::Face(_) => format!("a facet of element {id}"),
+            FacetSource::Face(_) | FacetSource::Rigid(_) => format!("a facet of element {id}"),
         };
         let fact = format!("{of} has no area: its nodes are {}", ids.join(", "));
         let remedy = "nodes stand in one place or on one line: mend the mesh";
@@ -441,11 +474,11 @@ fn facet(part: &ModelPart, face: &ElementFace, mut nodes: Vec<u32>, source: Face
     }
     let own = match source {
         FacetSource::Condition(at) => Some(part.conditions.properties[at as usize]),
-        FacetSource::Face(_) => None,
+        FacetSource::Face(_) | FacetSource::Rigid(_) => None,
     };
     let elastic = |id: &usize| part.properties.get(id).is_some_and(|p| representative_young(p).is_some());
     let properties = own.filter(elastic).unwrap_or(part.elements.properties[element as usize]);
-    Ok(Facet { nodes, shape, source, element, properties, role: Roles::Open })
+    Ok(Facet { nodes, shape, source, element, properties, role: Roles::Open, exact: None })
 }
 
 /// Marks of the nodes of these parts and of their conditions; of all nodes with `all`.

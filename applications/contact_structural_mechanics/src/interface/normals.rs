@@ -324,6 +324,7 @@ mod tests {
             element: 0,
             properties: 0,
             role: Roles::Slave,
+            exact: None,
         };
         Interface { facets: facets.iter().map(facet).collect(), ..Interface::default() }
     }

@@ -79,7 +79,8 @@ pub fn alm_parameters(
     let sizes = part.nodes.values.values(&NODAL_H, 0);
     let side = |role: Roles| {
         let (mut area, mut stiffness, mut length) = (0.0, 0.0, 0.0);
-        for facet in interfaces.iter().flat_map(|i| &i.facets).filter(|f| f.role == role || f.role == Roles::Open) {
+        let is_of_side = |f: &&super::facet::Facet| (f.role == role || f.role == Roles::Open) && !f.is_rigid();
+        for facet in interfaces.iter().flat_map(|i| &i.facets).filter(is_of_side) {
             let size = facet.size(part);
             let young = part.properties.get(&facet.properties).and_then(representative_young).unwrap_or(0.0);
             area += size;
@@ -124,6 +125,7 @@ mod tests {
             element: 0,
             properties,
             role,
+            exact: None,
         };
         let facets = vec![facet([0, 1], 1, Roles::Slave), facet([2, 3], 2, Roles::Master)];
         let interface = Interface { key: "0".to_owned(), facets, nodes: vec![0, 1, 2, 3], open: false };

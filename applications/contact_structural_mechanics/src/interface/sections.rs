@@ -62,7 +62,7 @@ pub fn unlike_sections(part: &ModelPart, interfaces: &[Interface]) -> Vec<Diagno
 /// The sections behind the facets of one side, by properties.
 fn sections(part: &ModelPart, interface: &Interface, role: Roles) -> Vec<Section> {
     let mut by_id: BTreeMap<usize, Section> = BTreeMap::new();
-    for facet in interface.facets.iter().filter(|facet| facet.role == role) {
+    for facet in interface.facets.iter().filter(|facet| facet.role == role && !facet.is_rigid()) {
         let element = facet.element as usize;
         let properties = part.elements.properties[element];
         if part.elements.kinds[element].of_revolution || by_id.contains_key(&properties) {

@@ -89,6 +89,7 @@ mod tests {
             nodal_normals: [[0.0, 0.0, 1.0]; 4].into(),
             slave_normal: [0.0, 0.0, 1.0],
             master_normal: zelus_core::vector3::normalised([rise, 0.0, -1.0]),
+            exact: None,
             choices: Choices::default(),
         }
     }

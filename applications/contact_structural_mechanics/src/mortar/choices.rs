@@ -41,6 +41,7 @@ mod tests {
             nodal_normals: [[0.0, 0.0, 1.0]; 4].into(),
             slave_normal: [0.0, 0.0, 1.0],
             master_normal: [0.0, 0.0, -1.0],
+            exact: None,
             choices,
         }
     }

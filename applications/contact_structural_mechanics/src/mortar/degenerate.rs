@@ -82,6 +82,7 @@ fn pair(slave_shape: &'static FacetShape, master_shape: &'static FacetShape, see
         nodal_normals: slave_shape.nodal(|_| slave_normal),
         slave_normal,
         master_normal,
+        exact: None,
         choices: Choices::default(),
     }
 }

@@ -161,6 +161,11 @@ impl<T: Real> FirstOrderPoints<'_, T> {
     /// Writes the shape functions of the master where a point `x` of the slave goes along `normal`.
     pub(super) fn along(&self, normal: [T; 3], x: [T; 3], lift: T, out: &mut Nodal<T>) {
         let pair = self.pair;
+        if let Some(exact) = &pair.exact
+            && exact.write_along(pair.master_shape, &pair.master, x, normal, out)
+        {
+            return;
+        }
         let distance = dot(sub(pair.master[0], x), pair.master_normal) / dot(normal, pair.master_normal);
         let mut projected = x;
         (0..3).for_each(|c| projected[c].add_product(normal[c], distance));

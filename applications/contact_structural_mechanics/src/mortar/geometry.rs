@@ -1,7 +1,7 @@
 //! The two facets of a contact pair as they stand, and the normals that go with them.
 
 use super::choices::Choices;
-use zelus_core::geometry::{FacetShape, Nodal};
+use zelus_core::geometry::{ExactFacet, FacetShape, Nodal};
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{constant, value};
 
@@ -32,6 +32,8 @@ pub struct PairGeometry<T: Real> {
     pub slave_normal: [T; 3],
     /// Unit normal of the plane of the master onto which points are projected; it may lag behind the master facet.
     pub master_normal: [T; 3],
+    /// The surface that the master facet stands for, where it is given exactly; its shape then has an apex.
+    pub exact: Option<ExactFacet>,
     /// Choices of the integration that the pair has frozen.
     pub choices: Choices,
 }
@@ -90,6 +92,7 @@ impl PairGeometry<f64> {
             nodal_normals: Nodal::empty(),
             slave_normal: constant(self.slave_normal),
             master_normal: constant(self.master_normal),
+            exact: self.exact,
             choices: self.choices,
         };
         // In place: with derivatives they are too large to be moved about.
@@ -105,6 +108,12 @@ impl<T: Real> PairGeometry<T> {
     #[inline]
     pub fn space(&self) -> usize {
         self.slave_shape.space
+    }
+
+    /// Master nodes on the facet: without an apex.
+    #[inline]
+    pub fn nodes_of_master(&self) -> &[[T; 3]] {
+        &self.master[..self.master.len() - usize::from(self.master_shape.apex)]
     }
 
     /// Whether a facet is of second order.
@@ -136,6 +145,7 @@ impl<T: Real> PairGeometry<T> {
             nodal_normals: self.nodal_normals.map(value),
             slave_normal: value(self.slave_normal),
             master_normal: value(self.master_normal),
+            exact: self.exact,
             choices: self.choices,
         }
     }

@@ -42,16 +42,17 @@ impl<T: Real> Polygon<T> {
     /// Intersects the flattened facets; `None` if they are too far apart or share no area.
     pub(super) fn new(pair: &PairGeometry<T>, settings: &SegmentationSettings) -> Option<Self> {
         let plane = Plane::new(pair);
-        if plane.is_beyond(&pair.master, settings.distance_threshold) {
+        let corners = pair.master_shape.corners;
+        if plane.is_beyond(pair.nodes_of_master(), settings.distance_threshold) {
             return None;
         }
         let slave = pair.slave.map(|x| plane.coordinates(x));
-        let master = pair.master.map(|x| plane.coordinates(x));
+        // Without nodes beside its corners.
+        let master = Nodal::new(corners, |n| plane.coordinates(pair.master[n]));
 
         let slave_shape = pair.slave_shape;
-        let corners = |nodes: &[[T; 2]], count: usize| Nodal::new(count, |n| nodes[n].map(T::value));
-        let mut list =
-            PointList::new(corners(&slave, slave_shape.corners), corners(&master, pair.master_shape.corners));
+        let values = |nodes: &[[T; 2]], count: usize| Nodal::new(count, |n| nodes[n].map(T::value));
+        let mut list = PointList::new(values(&slave, slave_shape.corners), values(&master, corners));
         list.tolerance = tolerance(&list.slave, settings.zero_tolerance_factor);
         list.collect();
         if list.len < 3 {

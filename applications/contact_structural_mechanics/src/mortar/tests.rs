@@ -58,6 +58,7 @@ fn pair(
         nodal_normals: slave_shape.nodal(|_| slave_normal),
         slave_normal,
         master_normal,
+        exact: None,
         choices: Choices::default(),
     }
 }
@@ -312,6 +313,7 @@ fn rigid(slave: &'static FacetShape, master: &'static FacetShape) {
             nodal_normals: before.nodal_normals.map(rotated),
             slave_normal: rotated(before.slave_normal),
             master_normal: rotated(before.master_normal),
+            exact: None,
             choices: before.choices,
         };
         let settings = SegmentationSettings::default();
@@ -493,6 +495,7 @@ fn reference_values(slave: &'static FacetShape, master: &'static FacetShape) {
             nodal_normals: slave.nodal(|_| vector()),
             slave_normal: vector(),
             master_normal: vector(),
+            exact: None,
             choices: Choices::default(),
         };
         let o = value_of(&pair);

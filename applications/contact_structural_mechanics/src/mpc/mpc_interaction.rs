@@ -24,7 +24,7 @@ use super::mpc_friction::{MpcFriction, reaction};
 use super::mpc_impact::MpcImpact;
 use super::mpc_kind::MpcKind;
 use super::mpc_results::write_results;
-use super::mpc_settings::{MpcSettings, require_slaves_of_first_order};
+use super::mpc_settings::{MpcSettings, refuse_rigid_shapes, require_slaves_of_first_order};
 use super::node_relation::{FollowingComponents, NodeRelation, can_follow};
 use super::relations::Relations;
 use crate::active_set::activation::{self, ActivationCriterion};
@@ -105,6 +105,7 @@ impl MpcInteraction {
     pub fn new(settings: MpcSettings, part: &mut ModelPart) -> Result<Self> {
         let interfaces = interfaces(part, &settings.parts, &settings.slaves)?;
         require_slaves_of_first_order(part, &interfaces)?;
+        refuse_rigid_shapes(&interfaces)?;
         add_contact_part(part, &interfaces);
         let mut messages = warnings_of_pairs(part, &settings.slaves, &interfaces);
         let mut overlaps = false;

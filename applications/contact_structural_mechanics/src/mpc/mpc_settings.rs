@@ -80,3 +80,16 @@ pub(crate) fn require_slaves_of_first_order(part: &ModelPart, interfaces: &[Inte
         .remedy("let the side of first order be the slave, or use alm_contact_process or mesh_tying_process, which take every shape")
         .into())
 }
+
+/// Refuses rigid shapes: a slave node would follow nodes that follow the reference node of the shape.
+///
+/// # Errors
+/// A facet of a rigid shape.
+pub(crate) fn refuse_rigid_shapes(interfaces: &[Interface]) -> Result<()> {
+    let Some(own) = interfaces.iter().find(|own| own.facets.iter().any(Facet::is_rigid)) else { return Ok(()) };
+    let fact = format!(
+        "pair \"{}\" has a rigid shape, whose nodes are eliminated already: constraints cannot follow them",
+        own.key
+    );
+    Err(Diagnostic::error("rigid-shape-mpc", fact).remedy("use alm_contact_process, or a penalty").into())
+}

@@ -130,7 +130,7 @@ impl Pairing {
     pub(crate) fn masters_of(&self, slaves: &BTreeSet<u32>) -> BTreeSet<u32> {
         let pairs = self.blocks.iter().flat_map(|block| block.pairs()).filter(|pair| pair.overlapping);
         let of_them = pairs.filter(|pair| self.slave(pair.key).nodes.iter().any(|node| slaves.contains(node)));
-        of_them.flat_map(|pair| self.master(pair.key).nodes.iter().copied()).collect()
+        of_them.flat_map(|pair| self.master(pair.key).nodes_with_apex()).collect()
     }
 
     /// Slave nodes of slave facets, ascending.
@@ -178,7 +178,7 @@ impl Pairing {
         let block = self.blocks.get(block)?;
         let key = block.pairs().get(at)?.key;
         let slaves = block.nodes(at).len() - block.slaves(at).len();
-        Some((key.interface as usize, slaves - self.master(key).nodes.len()..slaves))
+        Some((key.interface as usize, slaves - self.master(key).nodes_with_apex().count()..slaves))
     }
 
     fn facet(&self, interface: u32, facet: u32) -> &Facet {
@@ -301,9 +301,9 @@ impl Pairing {
         parameters: &Arc<StepParameters>,
     ) -> Result<Vec<Box<dyn ContactBlock>>> {
         let stem = settings.condition_stem();
-        let groups = group_by_shapes(&self.interfaces, pairs, |pair| pair.key);
+        let groups = group_by_shapes(&self.interfaces, pairs, true, |pair| pair.key);
         let mut blocks = Vec::new();
-        for ((slave, master), (pairs, nodes)) in groups {
+        for ((slave, master, _), (pairs, nodes)) in groups {
             let name = condition_name(&stem, slave, master);
             let entry = require_kind(EntityRole::Condition, &name)?;
             let exact = parameters.normal_variation == NormalVariation::Exact;
@@ -322,10 +322,12 @@ impl Pairing {
                 let has_owners = settings.formulation.multiplier.is_unknown();
                 let owners = slaves.iter().filter(|_| has_owners).map(|slave| self.owners[slave.place()]).collect();
                 let states = self.states.clone();
+                let exact = pairs.iter().filter_map(|pair| self.master(pair.key).exact.clone()).collect();
                 blocks.push((settings.formulation.block)(PairRequest {
                     entry,
                     slave,
                     master,
+                    exact,
                     pairs,
                     nodes,
                     slaves,

@@ -64,7 +64,7 @@ pub struct FacetPair {
 
 /// The operators of two facets as they stand; `None` when they do not overlap or carry no contact.
 ///
-/// `normals` gives the unit normal at a node of the slave, by its place.
+/// `normals` gives the unit normal at a node of the slave, by its place. Facets of rigid shapes count as flat.
 pub fn facet_operators(
     part: &ModelPart,
     slave: &Facet,
@@ -83,6 +83,7 @@ pub fn facet_operators(
         nodal_normals: slave_shape.nodal(normals),
         slave_normal: normal(slave)?,
         master_normal: normal(master)?,
+        exact: None,
         choices: Choices { slivers: settings.slivers, ..Choices::default() },
     };
     let found = match operators(&geometry, settings) {
@@ -177,6 +178,7 @@ mod tests {
                 element: 0,
                 properties: 0,
                 role: if is_slave { Roles::Slave } else { Roles::Master },
+                exact: None,
             });
         }
         let mut part = ModelPart::new("Structure");

@@ -13,7 +13,7 @@ use crate::mortar::{Choices, MOST_NODES, PairGeometry, SegmentationSettings};
 pub struct FacingPoint {
     /// Shape functions of the slave, as many as it has nodes.
     pub slave: [f64; MOST_NODES],
-    /// Shape functions of the master.
+    /// Shape functions of the master; of a rigid shape those of its flat facet.
     pub master: [f64; MOST_NODES],
     /// The slave's point.
     pub position: [f64; 3],
@@ -45,17 +45,18 @@ fn points_of(
     normal: &dyn Fn(u32) -> [f64; 3],
     settings: &SegmentationSettings,
 ) -> Option<Vec<FacingPoint>> {
-    let (slave_shape, master_shape) = (FacetShape::of(slave.shape)?, FacetShape::of(master.shape)?);
+    let (slave_shape, master_shape) = (FacetShape::of(slave.shape)?, master.facet_shape()?);
     let of = |facet: &Facet| Some(facet.normal(part)).filter(|normal| *normal != [0.0; 3]);
     let position = |facet: &Facet, at: usize| part.nodes.current[facet.nodes[at] as usize];
     let geometry = PairGeometry {
         slave_shape,
         master_shape,
         slave: slave_shape.nodal(|j| position(slave, j)),
-        master: master_shape.nodal(|l| position(master, l)),
+        master: master.positions_with_apex(part),
         nodal_normals: slave_shape.nodal(|j| normal(slave.nodes[j])),
         slave_normal: of(slave)?,
         master_normal: of(master)?,
+        exact: master.exact_facet(),
         choices: Choices { slivers: settings.slivers, ..Choices::default() },
     };
     let mut out = Vec::new();
@@ -75,7 +76,10 @@ fn points_of(
             spread: [0.5, 1.0].map(|way| spread(&geometry, at, normal, way * gap)),
         };
         found.slave[..slave_shape.nodes].copy_from_slice(&point.slave);
-        found.master[..master_shape.nodes].copy_from_slice(&point.master);
+        // On the flat facet: its shape functions are those of the exact surface without the share of the apex.
+        let flat: f64 = point.master.iter().take(master.nodes.len()).sum();
+        let share = if master.exact.is_some() { flat } else { 1.0 };
+        (0..master.nodes.len()).for_each(|l| found.master[l] = point.master[l] / share);
         out.push(found);
     });
     Some(out)

@@ -13,13 +13,14 @@ const PLACES: usize = 2;
 /// Pairs that a thread takes at a time, at least.
 pub const PAIRS: usize = 64;
 
-/// Pairs of the same shapes (slave, master), and their node indices: master nodes, then slave nodes.
-pub type Groups<T> = BTreeMap<(Shape, Shape), (Vec<T>, Vec<u32>)>;
+/// Pairs of the same shapes (slave, master, whether the master has an apex), and their node indices: master nodes, then slave nodes.
+pub type Groups<T> = BTreeMap<(Shape, Shape, bool), (Vec<T>, Vec<u32>)>;
 
-/// Sorts `pairs`, whose facets `key` names, by shapes.
+/// Sorts `pairs`, whose facets `key` names, by shapes; `apexes` puts those of exact surfaces among the master nodes.
 pub fn group_by_shapes<T>(
     interfaces: &[Interface],
     pairs: impl IntoIterator<Item = T>,
+    apexes: bool,
     key: impl Fn(&T) -> PairKey,
 ) -> Groups<T> {
     let mut groups: Groups<T> = BTreeMap::new();
@@ -27,8 +28,9 @@ pub fn group_by_shapes<T>(
         let key = key(&pair);
         let facets = &interfaces[key.interface as usize].facets;
         let (slave, master) = (&facets[key.slave as usize], &facets[key.master as usize]);
-        let (group, nodes) = groups.entry((slave.shape, master.shape)).or_default();
-        nodes.extend(&master.nodes);
+        let apex = master.exact.as_ref().filter(|_| apexes).map(|exact| exact.1);
+        let (group, nodes) = groups.entry((slave.shape, master.shape, apex.is_some())).or_default();
+        nodes.extend(master.nodes.iter().copied().chain(apex));
         nodes.extend(&slave.nodes);
         group.push(pair);
     }

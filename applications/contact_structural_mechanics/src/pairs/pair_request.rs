@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use zelus_core::geometry::Shape;
+use zelus_core::geometry::{ExactFacet, Shape};
 use zelus_core::model::EntityKind;
 
 use super::pair::Pair;
@@ -18,6 +18,8 @@ pub struct PairRequest {
     pub master: Shape,
     /// The registered condition of this shape.
     pub entry: &'static EntityKind,
+    /// Exact surfaces of the masters, one a pair; none for masters of elements.
+    pub exact: Vec<Arc<(ExactFacet, u32)>>,
     /// The pairs.
     pub pairs: Vec<Pair>,
     /// Node indices of each pair: those around it, master nodes, slave nodes.

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use zelus_core::entities::{LocalUnknown, StepView};
-use zelus_core::geometry::{FacetShape, Nodal};
+use zelus_core::geometry::{ExactFacet, FacetShape, Nodal};
 use zelus_core::model::{EntityKind, ScalarVariable};
 use zelus_core::parallel;
 use zelus_core::vector3::{add, scale};
@@ -32,6 +32,8 @@ pub(super) struct PairsOfShapes {
     pub slave: &'static FacetShape,
     /// Shape of the master facets.
     pub master: &'static FacetShape,
+    /// Exact surfaces of the masters, one a pair; none for masters of elements.
+    exact: Vec<Arc<(ExactFacet, u32)>>,
     /// The pairs.
     pub pairs: Vec<Pair>,
     /// Settings and numbers of the step.
@@ -59,15 +61,30 @@ impl PairsOfShapes {
     /// If the shapes are not those of facets.
     pub(super) fn new(request: PairRequest, multiplier: Multiplier) -> Self {
         let PairRequest {
-            entry, slave, master, pairs, nodes, slaves, owners, around, patches, parameters, states, ..
+            entry,
+            slave,
+            master,
+            exact,
+            pairs,
+            nodes,
+            slaves,
+            owners,
+            around,
+            patches,
+            parameters,
+            states,
+            ..
         } = request;
         let [slave, master] = [slave, master].map(|shape| FacetShape::of(shape).expect("pairs are made of facets"));
+        let master =
+            if exact.is_empty() { master } else { master.and_apex().expect("facets of exact surfaces are linear") };
         let counts = [master.nodes, slave.nodes];
         let unknowns = local_unknowns(around, counts, slave.space, &multiplier.unknowns(slave.space));
         Self {
             entry,
             slave,
             master,
+            exact,
             pairs,
             parameters,
             states,
@@ -134,6 +151,7 @@ impl PairsOfShapes {
             nodal_normals: Nodal::new(slaves.len(), |j| states[self.slaves(at)[j]].kinematics.normal),
             slave_normal: pair.slave_normal,
             master_normal: pair.master_normal,
+            exact: self.exact.get(at).map(|exact| exact.0),
             choices: pair.choices,
         }
     }

@@ -260,6 +260,7 @@ fn line_pair(line: &[f64], start: &[f64]) -> PairGeometry<f64> {
         nodal_normals: [vector(line, 4), vector(line, 5)].into(),
         slave_normal: vector(start, 6),
         master_normal: vector(start, 7),
+        exact: None,
         choices: Choices::default(),
     }
 }
@@ -327,6 +328,7 @@ fn sign_of_the_contact_force() {
         nodal_normals: [up; 4].into(),
         slave_normal: up,
         master_normal: down,
+        exact: None,
         choices: Choices::default(),
     };
     let node = SlaveNode {
@@ -439,6 +441,7 @@ fn penalty_friction_acts_through_the_mortar_operators() {
                 nodal_normals: [free(up); 4].into(),
                 slave_normal: free(up),
                 master_normal: free(down),
+                exact: None,
                 choices: Choices::default(),
             };
             let node = SlaveNode {

@@ -196,10 +196,10 @@ impl TyingInteraction {
     fn make_blocks(&mut self, part: &ModelPart) -> Result<()> {
         let multipliers = self.settings.formulation.multiplier.unknowns(part.info.domain_size);
         let pairs = self.pairs.iter().map(|(&key, &operators)| FacetPair { key, operators });
-        let groups = group_by_shapes(&self.interfaces, pairs, |pair| pair.key);
+        let groups = group_by_shapes(&self.interfaces, pairs, false, |pair| pair.key);
         self.blocks.clear();
         self.keys.clear();
-        for ((slave, master), (pairs, nodes)) in groups {
+        for ((slave, master, _), (pairs, nodes)) in groups {
             self.keys.push(pairs.iter().map(|pair| pair.key).collect());
             let slaves = pairs.iter().flat_map(|pair| self.slaves_of(pair.key));
             let owners = slaves.map(|slave| self.table.owners[slave.place()]).collect();

@@ -15,7 +15,7 @@ use zelus_core::register;
 
 use super::constraints_of_process::{couple, uncouple};
 use super::kinematic_coupling_process::coupled_part;
-use super::reference_node::{ReferenceNode, components, prepare, required};
+use super::reference_node::{ReferenceNode, components, prepare, refuse_revolution, required};
 use super::resultant::Resultant;
 use crate::variables::{DISPLACEMENT, ROTATION};
 
@@ -40,6 +40,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(required)?;
     let target = coupled_part(&settings, request.model)?;
     let part = request.model.root(&target.path)?;
+    refuse_revolution(part, &target)?;
     let reference = ReferenceNode::new(&settings, part, &target)?;
     let resultant = Resultant::of(part, target.selection(&part.tree)?);
     if !(resultant.area > 0.0 && resultant.area.is_finite()) {

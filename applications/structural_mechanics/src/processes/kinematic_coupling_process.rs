@@ -11,10 +11,11 @@ use zelus_core::vector3::sub;
 
 use super::constraints_of_process::{couple, uncouple};
 use super::kinematic_coupling::{KinematicCoupling, LargeRotation};
-use super::reference_node::{self, PART, ReferenceNode, required};
+use super::reference_node::{self, PART, ReferenceNode, refuse_revolution, required};
 use super::rigid_body_mass::{self, add_to_mesh, part_of_masses};
 
-struct KinematicCouplingProcess {
+/// A coupling with its reference node.
+pub(super) struct KinematicCouplingProcess {
     target: Target,
     reference: ReferenceNode,
     coupling: KinematicCoupling,
@@ -35,6 +36,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let settings = request.settings_with(required)?;
     let target = coupled_part(&settings, request.model)?;
     let part = request.model.root(&target.path)?;
+    refuse_revolution(part, &target)?;
     let reference = ReferenceNode::new(&settings, part, &target)?;
     let wanted: [bool; 3] = settings.get("components")?.parse("components")?;
     let coupled: Vec<u8> = (0..part.info.domain_size as u8).filter(|&c| wanted[usize::from(c)]).collect();
@@ -42,24 +44,40 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         let problem = settings.error("components", "invalid-value", "no component is coupled");
         return Err(problem.remedy("write true for one at least, in planar models in the plane").into());
     }
-    let nodes = &target.selection(&part.tree)?.nodes;
-    let point = part.nodes.initial[reference.node as usize];
-    let arm = |node: u32| sub(part.nodes.initial[node as usize], point);
-    let arms = nodes.iter().map(|&node| (node, arm(node))).collect();
     let large = match settings.get("large_rotations")? {
-        node if node.is_null() => !is_of_small_displacements(part, nodes),
+        node if node.is_null() => !is_of_small_displacements(part, &target.selection(&part.tree)?.nodes),
         node => node.bool()?,
     };
-    let large = large && !part.info.solver.linear;
-    let masses = match rigid_body_mass::masses(&settings, part.info.domain_size, point)?.len() {
-        0 => Vec::new(),
-        _ => {
-            let nodes = &part.part(&part_of_masses(settings.get_str(PART)?))?.nodes;
-            nodes.iter().filter(|&&node| node != reference.node).map(|&node| (node, arm(node))).collect()
-        }
-    };
-    let coupling = KinematicCoupling { reference: reference.node, arms, coupled, masses, made: 0..0 };
-    Ok(Box::new(KinematicCouplingProcess { target, reference, coupling, large, is_first_step: false }))
+    Ok(Box::new(KinematicCouplingProcess::new(&settings, part, target, reference, (coupled, large))?))
+}
+
+impl KinematicCouplingProcess {
+    /// The coupling of the nodes of a part in these components, under large rotations or small ones.
+    ///
+    /// # Errors
+    /// Masses that no body has.
+    pub(super) fn new(
+        settings: &Settings,
+        part: &ModelPart,
+        target: Target,
+        reference: ReferenceNode,
+        (coupled, large): (Vec<u8>, bool),
+    ) -> Result<Self> {
+        let nodes = &target.selection(&part.tree)?.nodes;
+        let point = part.nodes.initial[reference.node as usize];
+        let arm = |node: u32| sub(part.nodes.initial[node as usize], point);
+        let arms = nodes.iter().map(|&node| (node, arm(node))).collect();
+        let large = large && !part.info.solver.linear;
+        let masses = match rigid_body_mass::masses(settings, part.info.domain_size, point)?.len() {
+            0 => Vec::new(),
+            _ => {
+                let nodes = &part.part(&part_of_masses(settings.get_str(PART)?))?.nodes;
+                nodes.iter().filter(|&&node| node != reference.node).map(|&node| (node, arm(node))).collect()
+            }
+        };
+        let coupling = KinematicCoupling { reference: reference.node, arms, coupled, masses, made: 0..0 };
+        Ok(Self { target, reference, coupling, large, is_first_step: false })
+    }
 }
 
 /// Makes the reference node and the masses of the body where they are missing.
@@ -67,12 +85,17 @@ fn prepare(request: &mut ProcessRequest<'_>) -> Result<()> {
     reference_node::prepare(request)?;
     // Faults of the settings are told when the process is made.
     let Ok(settings) = request.settings_with(required) else { return Ok(()) };
+    prepare_masses(request.model, &settings)
+}
+
+/// Makes the masses of the body where they are missing.
+pub(super) fn prepare_masses(model: &mut Model, settings: &Settings) -> Result<()> {
     let path = settings.get_str(PART)?;
-    let Ok(part) = request.model.root_mut(path) else { return Ok(()) };
+    let Ok(part) = model.root_mut(path) else { return Ok(()) };
     let Some(&[node]) = part.part(path).ok().map(|own| &own.nodes[..]) else { return Ok(()) };
     let point = part.nodes.initial[node as usize];
-    let Ok(masses) = rigid_body_mass::masses(&settings, part.info.domain_size, point) else { return Ok(()) };
-    add_to_mesh(part, (path, node), &masses, &settings)
+    let Ok(masses) = rigid_body_mass::masses(settings, part.info.domain_size, point) else { return Ok(()) };
+    add_to_mesh(part, (path, node), &masses, settings)
 }
 
 /// Whether all elements at some nodes are of small displacements; collective.

@@ -11,6 +11,8 @@ mod reference_node;
 mod rigid_body_mass;
 mod kinematic_coupling;
 mod kinematic_coupling_process;
+mod rigid_shape_facets;
+mod rigid_shape_process;
 mod distributing_coupling_process;
 mod local_axes;
 mod distribute_load_on_surface_process;

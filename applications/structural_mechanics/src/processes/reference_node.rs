@@ -5,7 +5,7 @@
 
 use zelus_core::assembly::System;
 use zelus_core::diagnostics::{Diagnostic, Place, Result};
-use zelus_core::model::{ModelPart, ScalarVariable, SubPart};
+use zelus_core::model::{Model, ModelPart, ScalarVariable, SubPart};
 use zelus_core::names::{Name, lasting};
 use zelus_core::parameters::{Defaults, Settings};
 use zelus_core::processes::{ProcessRequest, Target, check_unknowns};
@@ -19,7 +19,7 @@ use crate::variables::{
 
 /// Keys of its settings.
 pub(super) const PART: &str = "reference_model_part_name";
-const POINT: &str = "reference_point";
+pub(super) const POINT: &str = "reference_point";
 /// Distance from the given point, as a share of its distance from the origin and of 1, that is round-off.
 const AT_POINT: f64 = 1e-9;
 /// Rotation beyond which a coupling for small rotations is off by its square (radian).
@@ -57,14 +57,17 @@ pub(super) fn prepare(request: &mut ProcessRequest<'_>) -> Result<()> {
     if request.model.root(coupled).and_then(|root| root.part(coupled)).is_err() {
         return Ok(());
     }
-    let (path, place) = (settings.get_str(PART)?.to_owned(), settings.key_place(PART));
-    let Ok(part) = request.model.root_mut(&path) else { return Ok(()) };
     let point = settings.get(POINT)?;
+    let point: Option<[f64; 3]> = if point.is_null() { None } else { Some(point.parse(POINT)?) };
+    prepare_at(request.model, &settings, point)
+}
+
+/// As [`prepare`]; a part that is missing is made with a node at a point, if there is one.
+pub(super) fn prepare_at(model: &mut Model, settings: &Settings, point: Option<[f64; 3]>) -> Result<()> {
+    let (path, place) = (settings.get_str(PART)?.to_owned(), settings.key_place(PART));
+    let Ok(part) = model.root_mut(&path) else { return Ok(()) };
     if part.part(&path).is_err() {
-        if point.is_null() {
-            return Ok(());
-        }
-        let point: [f64; 3] = point.parse(POINT)?;
+        let Some(point) = point else { return Ok(()) };
         not_shared(part, &path, &place)?;
         let (above, name) = path.rsplit_once('.').unwrap_or(("", &path));
         part.part(above).map_err(|error| error.at(&place))?;
@@ -93,6 +96,17 @@ pub(super) fn prepare(request: &mut ProcessRequest<'_>) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Refuses a coupling of bodies of revolution.
+///
+/// # Errors
+/// A model with elements of revolution.
+pub(super) fn refuse_revolution(part: &ModelPart, coupled: &Target) -> Result<()> {
+    let Some(kind) = part.elements.kinds.iter().find(|kind| kind.name.contains("Axisym")) else { return Ok(()) };
+    let fact = format!("{} are of a body of revolution, which cannot rotate as a whole", kind.name);
+    let problem = Diagnostic::error("axisymmetric-coupling", fact).at(coupled.place.clone());
+    Err(problem.remedy("model the body in space").into())
 }
 
 pub(super) fn not_shared(part: &ModelPart, path: &str, place: &Place) -> Result<()> {
@@ -138,10 +152,6 @@ impl ReferenceNode {
         if others.contains(&node) {
             let fact = format!("the reference node {} belongs to {}", part.nodes.ids[node as usize], coupled.path);
             return Err(problem("reference-node", fact, "take it out of that part").into());
-        }
-        if let Some(kind) = part.elements.kinds.iter().find(|kind| kind.name.contains("Axisym")) {
-            let fact = format!("{} are of a body of revolution, which cannot rotate as a whole", kind.name);
-            return Err(problem("axisymmetric-coupling", fact, "model the body in space").into());
         }
         if part.info.solver.explicit {
             let fact = "explicit steps have no inertia for rotations of a reference node".to_owned();

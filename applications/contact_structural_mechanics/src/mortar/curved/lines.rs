@@ -31,6 +31,7 @@ impl<T: Real> CurvedLines<'_, T> {
                 nodal_normals: LINE_2.nodal(|n| pair.nodal_normals[own[n]]),
                 slave_normal: LINE_2.unit_normal(&slave, LINE_2.centre),
                 master_normal: LINE_2.unit_normal(&master, LINE_2.centre),
+                exact: None,
                 choices: Choices::default(),
             };
             if let Some(ends) = segmentation_2d::interval(&chords, self.settings) {
@@ -63,7 +64,9 @@ impl<T: Real> CurvedLines<'_, T> {
         let x = interpolate(&slave, &pair.slave);
         let weight = self.settings.revolution().map_or(measure, |per_radius| measure * x[0] * per_radius);
         let direction = interpolate(&slave, &pair.nodal_normals);
-        let master = on_master(master, &pair.master, x, direction);
+        let mut at = Nodal::empty();
+        let is_exact = pair.exact.is_some_and(|exact| exact.write_along(master, &pair.master, x, direction, &mut at));
+        let master = if is_exact { at } else { on_master(master, &pair.master, x, direction) };
         visit(&OverlapPoint { local, slave, master, weight });
     }
 }

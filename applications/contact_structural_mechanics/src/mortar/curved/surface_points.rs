@@ -7,7 +7,7 @@ use super::super::overlap_point::OverlapPoint;
 use super::super::segmentation_3d::{Plane, Vertex, area, cross2, minus, place, tolerance};
 use super::super::settings::SegmentationSettings;
 use super::outline::{ClosedLine, rim};
-use zelus_core::geometry::{Crossing, FacetShape, Nodal, ShapeTable, TRIANGLE_3, combine};
+use zelus_core::geometry::{Crossing, ExactFacet, ExactFunctions, FacetShape, Nodal, ShapeTable, TRIANGLE_3, combine};
 use zelus_core::scalar::{Dual, Real};
 use zelus_core::vector3::{cross, dot, norm};
 
@@ -99,6 +99,11 @@ impl FacetPoint {
         Self { local, values: at.map(|n| n.value), gradients: [0, 1].map(|a| at.map(|n| n.gradient[a])) }
     }
 
+    fn exact(facet: &ExactFacet, shape: &FacetShape, local: [f64; 2]) -> Self {
+        let ExactFunctions { values, gradients } = facet.functions(shape, local);
+        Self { local, values, gradients }
+    }
+
     /// ∂v/∂ξ and ∂v/∂η of an interpolated vector.
     pub(super) fn derivatives<const C: usize>(&self, nodal: &[[f64; C]]) -> [[f64; C]; 2] {
         [0, 1].map(|a| combine(&self.gradients[a], nodal))
@@ -127,7 +132,7 @@ impl SurfacePoints {
     pub(super) fn new(pair: &PairGeometry<f64>, settings: &SegmentationSettings) -> Self {
         let mut out = Self::default();
         let plane = Plane::new(pair);
-        let is_apart = plane.is_beyond(&pair.master, settings.distance_threshold);
+        let is_apart = plane.is_beyond(pair.nodes_of_master(), settings.distance_threshold);
         let flat = pair.slave.map(|x| plane.coordinates(x));
         let outline = outline(pair, &plane);
         let rule = settings.rule_of_second_order();
@@ -210,9 +215,12 @@ impl SurfacePoints {
             let shape = pair.master_shape;
             let guess = self.points.last().and_then(|last| last.master_near(pair, slave.local));
             let crossing = |guess: [f64; 2]| shape.crossing(&pair.master, x, direction, guess);
-            let way = guess.and_then(crossing).or_else(|| crossing(shape.centre));
+            let exact = pair.exact.and_then(|exact| Some((exact, exact.crossing(shape, &pair.master, x, direction)?)));
+            let flat = || guess.and_then(crossing).or_else(|| crossing(shape.centre));
+            let way = exact.map(|(_, way)| way).or_else(flat);
             let local = way.map_or_else(|| shape.closest_point(&pair.master, x, shape.centre), |way| way.local);
-            let master = FacetPoint::new(shape, local);
+            let master = exact
+                .map_or_else(|| FacetPoint::new(shape, local), |(exact, _)| FacetPoint::exact(&exact, shape, local));
             self.covered += weight;
             let barycentric = *barycentric;
             self.points.push(SurfacePoint { barycentric, share, weight, slave, inverse, stretch, master, way });
