@@ -114,7 +114,7 @@ impl Contact {
 
         let facet = |nodes: Vec<u32>, role| {
             let shape = shape(nodes.len());
-            Facet { nodes, shape, source: FacetSource::Face(0), element: 0, properties: 1, role }
+            Facet { nodes, shape, source: FacetSource::Face(0), element: 0, properties: 1, role, exact: None }
         };
         let slave = facet(face.iter().map(|&n| n as u32).collect(), Roles::Slave);
         let master = facet((count..count + masters).map(|n| n as u32).collect(), Roles::Master);
@@ -172,6 +172,7 @@ impl Contact {
             slaves: slaves.clone(),
             owners: Vec::new(),
             around,
+            exact: Vec::new(),
             bodies,
             patches: patches.clone(),
             parameters,
