@@ -142,6 +142,7 @@ fn pair(slave_shape: &'static FacetShape, master_shape: &'static FacetShape) -> 
         slave_normal: normal(slave_shape, &slave),
         master_normal: normal(master_shape, &master),
         choices: Choices::default(),
+        exact: None,
     }
 }
 

@@ -17,10 +17,10 @@ struct Block {
 /// Adds the elements, with properties of their own.
 pub(super) fn add(mesh: &Mesh, space: usize, out: &mut MdpaDocument) {
     let elements = out.elements.iter().flat_map(|block| &block.ids);
-    let mut next = elements.max().map_or(1, |id| id + 1);
+    let first = elements.max().map_or(1, |id| id + 1);
     let properties = out.properties.iter().map(|block| block.id).max().map_or(1, |id| id + 1);
     let mut blocks: Vec<Block> = Vec::new();
-    for own in &mesh.discrete {
+    for (next, own) in (first..).zip(&mesh.discrete) {
         let (stem, variable, values) = match &own.kind {
             DiscreteKind::Ground(values) => ("NodalConcentratedElement", "NODAL_DISPLACEMENT_STIFFNESS", &values[..]),
             DiscreteKind::Between(values) => ("SpringDamperElement", "NODAL_DISPLACEMENT_STIFFNESS", &values[..]),
@@ -39,7 +39,6 @@ pub(super) fn add(mesh: &Mesh, space: usize, out: &mut MdpaDocument) {
         blocks[at].ids.push(next);
         blocks[at].nodes.extend(own.nodes.iter().map(|&node| mesh.node_ids[node as usize]));
         blocks[at].values.extend(values);
-        next += 1;
     }
     if !blocks.is_empty() {
         out.properties.push(PropertiesBlock { id: properties, ..PropertiesBlock::default() });
