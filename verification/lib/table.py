@@ -3,6 +3,8 @@ import math, os, re
 
 from . import svg
 
+LONGEST = 300  # letters of the reason for a miss
+
 
 class Row:
     pass
@@ -165,4 +167,4 @@ def said(row):
     """The reason for a miss, for a cell of a table."""
     reason = (row.known + "; " if row.known else "") + row.reason
     reason = re.sub(r"error\[[\w-]+\] ", "", reason).split("; largest residual")[0]
-    return reason.replace("|", "/").replace("\n", " ")[:160]
+    return reason.replace("|", "/").replace("\n", " ")[:LONGEST]
