@@ -12,7 +12,7 @@ use crate::friction::slip;
 use crate::interface::SlaveIndex;
 use crate::law::constrained_multiplier::along_free_tangents;
 use crate::law::rules::{self, Decision, SlaveNumbers};
-use crate::law::{Augmentation, MultiplierConstraint, NodeState, OverclosureLaw, Sliding, SoftTangent, StepParameters};
+use crate::law::{Augmentation, MultiplierConstraint, NodeState, Sliding, SoftTangent, StepParameters};
 use crate::mortar::{tangent, tangential};
 use crate::pairs::{Formulation, Multiplier};
 use crate::settings::Setup;
@@ -36,48 +36,28 @@ impl<'a> Rules<'a> {
         Self { formulation: setup.settings.formulation, parameters: &setup.parameters, tolerances: setup.tolerances }
     }
 
-    /// Takes what laws of friction and of soft contact say in the present state.
+    /// Takes what laws of friction that depend on the sliding, and of soft contact, say in the present state of every slave node.
     pub(super) fn follow(self, part: &ModelPart, states: &mut SlaveStates, setup: &Setup) {
-        self.follow_sliding(part, states);
-        if let Some(law) = &setup.settings.overclosure {
-            self.soften(part, states, law.as_ref());
-        }
-    }
-
-    /// Takes the bounds of a law of friction that depends on the sliding from the present state of every slave node.
-    fn follow_sliding(self, part: &ModelPart, states: &mut SlaveStates) {
-        let law = self.parameters.friction_law;
-        if !law.depends_on_sliding || !self.formulation.frictional() {
+        let friction = Some(self.parameters.friction_law);
+        let friction = friction.filter(|law| law.depends_on_sliding && self.formulation.frictional());
+        let soft = setup.settings.overclosure.as_deref();
+        if friction.is_none() && soft.is_none() {
             return;
         }
-        let bound = |slave: SlaveIndex| {
-            let numbers = self.numbers(part, states, slave);
-            let speed = norm(numbers.slip) / part.info.delta_time;
-            let sliding = Sliding { pressure: numbers.pressure().min(0.0), speed };
-            law.bound_at(&part.nodes, states.mesh_node(slave) as usize, sliding)
-        };
-        let bounds: Vec<_> = states.slaves().iter().map(|&slave| bound(slave)).collect();
-        let mut bounds = bounds.into_iter();
-        states.for_each(|_, state| state.parameters.friction = bounds.next().expect("one a slave node"));
-    }
-
-    /// Takes the tangent of a law of soft contact at the pressure of every slave node.
-    fn soften(self, part: &ModelPart, states: &mut SlaveStates, law: &dyn OverclosureLaw) {
-        let pressure = |slave: SlaveIndex| {
-            let normal = states[slave].kinematics.normal;
-            let whole = match self.formulation.multiplier {
-                Multiplier::Vector(_) => {
-                    dot(self.formulation.multiplier.value(&part.slave_nodes, states.owner(slave)), normal)
-                }
-                _ => self.formulation.multiplier.value(&part.slave_nodes, states.owner(slave))[0],
-            };
-            if states[slave].law.active { (-self.parameters.scale_factor * whole).max(0.0) } else { 0.0 }
-        };
-        let pressures: Vec<f64> = states.slaves().iter().map(|&slave| pressure(slave)).collect();
-        let mut pressures = pressures.into_iter();
-        states.for_each(|_, state| {
-            state.parameters.soft = pressures.next().map(|pressure| SoftTangent::of(law, pressure));
-        });
+        let slaves = states.slaves();
+        let all: Vec<SlaveNumbers> = slaves.iter().map(|&slave| self.numbers(part, states, slave)).collect();
+        for (&slave, numbers) in slaves.iter().zip(&all) {
+            let pressure = numbers.pressure().min(0.0);
+            if let Some(law) = friction {
+                let sliding = Sliding { pressure, speed: norm(numbers.slip) / part.info.delta_time };
+                let node = states.mesh_node(slave) as usize;
+                states[slave].parameters.friction = law.bound_at(&part.nodes, node, sliding);
+            }
+            if let Some(law) = soft {
+                let pressure = if numbers.state.is_active() { -pressure } else { 0.0 };
+                states[slave].parameters.soft = Some(SoftTangent::of(law, pressure));
+            }
+        }
     }
 
     /// The decision for every slave node, and the states the nodes are in.
@@ -273,7 +253,7 @@ impl<'a> Rules<'a> {
             tangent: state.law.tangent,
             stiffness,
             driven,
-            stays: state.parameters.no_separation && state.law.joined,
+            stays: state.stays(),
             friction: state.parameters.friction,
             scale_factor: parameters.scale_factor,
             tangent_factor: parameters.tangent_factor,

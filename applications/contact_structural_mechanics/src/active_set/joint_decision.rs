@@ -19,8 +19,7 @@ use crate::slave_nodes::{SlaveState, SlaveStates};
 /// The slave nodes that are decided on together: all that face a master and that no support constrains.
 pub(super) fn slave_nodes(states: &SlaveStates) -> Vec<SlaveIndex> {
     let is_free = |state: &SlaveState| {
-        let decides = !(state.parameters.no_separation && state.law.joined);
-        decides && !state.kinematics.isolated && state.kinematics.area > 0.0 && state.law.constraints.are_none()
+        !state.stays() && !state.kinematics.isolated && state.kinematics.area > 0.0 && state.law.constraints.are_none()
     };
     states.iter().filter(|(_, state)| is_free(state)).map(|(slave, _)| slave).collect()
 }

@@ -107,6 +107,11 @@ impl SlaveState {
         }
     }
 
+    /// Whether it stays in contact, once it has been in it, whatever its pressure.
+    pub fn stays(&self) -> bool {
+        self.parameters.no_separation && self.law.joined
+    }
+
     /// Gap g̃/A (length); `None` where nothing overlaps.
     pub fn gap(&self) -> Option<f64> {
         (self.kinematics.area > 0.0).then(|| self.kinematics.weighted_gap / self.kinematics.area)
