@@ -474,3 +474,86 @@ fn a_shape_is_as_the_same_tool_meshed() {
     assert!(force[1] < -1.0 && force[0] > 0.2 * force[1].abs(), "{force:?}");
     (0..2).for_each(|c| assert_close(force[c], meshed[c], 0.01, "force of the meshed tool"));
 }
+
+/// ANALYTIC: a disc and a ball that roll down a slope of an angle α without slip: a = g sin α / (1 + J/(m r²)), 2/3 and 5/7 of g sin α, and
+/// the rotation x/r. The weight grows with t/T, so that they do not bounce: x = a T²/6. Tolerance: the slope is soft, so that contact spans
+/// several of its cells.
+#[test]
+fn a_disc_and_a_ball_roll_down_a_slope() {
+    let (angle, gravity, mass, radius, end) = (0.2_f64, 9.81, 1.0, 1.0, 1.2);
+    let ball = ["TotalLagrangianElement", "KirchhoffSaintVenant3DLaw"];
+    let disc = ["TotalLagrangianElement", "KirchhoffSaintVenantPlaneStrain2DLaw"];
+    for (shape, counts, share, [element, law]) in
+        [(Shape::Quad4, &[60, 3, 0][..2], 0.5, disc), (Shape::Hex8, &[10, 4, 2], 0.4, ball)]
+    {
+        let dim = shape.dim();
+        let grid = Grid::new(shape, counts, |p| {
+            let depth = 0.4 * (p[dim - 1] - 1.0);
+            if dim == 2 { [3.0 * p[0], depth, 0.0] } else { [p[0], 0.4 * (p[1] - 0.5), depth] }
+        });
+        let young = if dim == 2 { 2e3 } else { 4e3 };
+        let material =
+            json!({"YOUNG_MODULUS": young, "POISSON_RATIO": 0.3, "DENSITY": 1e-3, "FRICTION_COEFFICIENT": 0.6});
+        let mut deck = Deck::new(&grid, element, law, material);
+        deck.set("solver_type", json!("Dynamic")).set("scheme_type", json!("newmark"));
+        deck.set("time_integration_method", json!("implicit")).steps(0.02, end);
+        deck.fix(|p| p[dim - 1] == 0.0, [zero(), zero(), zero()]);
+        let kind = if dim == 2 { "LineCondition" } else { "SurfaceCondition" };
+        let top = deck.facets(|p| p[dim - 1] == 1.0, kind);
+        let mut place = [if dim == 2 { 0.8 } else { 0.3 }, 0.0, 0.0];
+        place[dim - 1] = radius + 1e-3;
+        let inertia = share * mass * radius * radius;
+        let (name, inertia) = if dim == 2 { ("cylinder", json!(inertia)) } else { ("sphere", json!(vec![inertia; 3])) };
+        let body = json!({"mass": mass, "inertia": inertia, "facet_angle": if dim == 2 { 5.0 } else { 30.0 }});
+        contact(&mut deck, &top, json!({"name": name, "radius": radius}), place, body);
+        deck.set("contact_settings", json!({"mortar_type": "ALMContactFrictional"}));
+        deck.last_process()["contact_type"] = json!("Frictional");
+        let mut weight = [mass * gravity * angle.sin(), 0.0, 0.0];
+        weight[dim - 1] = -mass * gravity * angle.cos();
+        let settings = json!({"model_part_name": REFERENCE, "variable_name": "POINT_LOAD", "value": weight.map(|w| json!(format!("{w}*t/{end}")))});
+        deck.process("assign_vector_variable_to_conditions_process", settings);
+        let ran = deck.run();
+        let way = ran.last_number(&format!("DISPLACEMENT_X of {REFERENCE}"));
+        let about = if dim == 2 { "ROTATION_Z" } else { "ROTATION_Y" };
+        let turn = ran.last_number(&format!("{about} of {REFERENCE}")).abs();
+        let expected = gravity * angle.sin() / (1.0 + share) * end * end / 6.0;
+        println!("{shape:?}: way {way:.4}, expected {expected:.4}; rotation {turn:.4}, {} steps", ran.times().len());
+        assert_close(way, expected, 0.02, "way down the slope");
+        assert_close(turn, expected / radius, 0.03, "rotation");
+    }
+}
+
+/// A cylinder pressed into a block and drawn aside meets the same force by each formulation, with and without friction. Tolerance: Nitsche's
+/// method, without multipliers, and the others differ by the size of cells, 20 to the radius.
+#[test]
+fn a_shape_is_a_master_of_each_formulation() {
+    let grid = Grid::new(Shape::Quad4, &[80, 10], |p| [4.0 * p[0] - 2.0, 0.5 * (p[1] - 1.0), 0.0]);
+    let force = |kind: &str, coefficient: f64| {
+        let material = json!({"YOUNG_MODULUS": 100.0, "POISSON_RATIO": 0.3, "FRICTION_COEFFICIENT": coefficient});
+        let mut deck = Deck::new(&grid, "SmallDisplacementElement", "LinearElasticPlaneStrain2DLaw", material);
+        deck.fix(|p| p[1] == 0.0, [zero(), zero(), zero()]).steps(0.25, 1.0);
+        let top = deck.facets(|p| p[1] == 1.0, "LineCondition");
+        contact(&mut deck, &top, json!({"name": "cylinder", "radius": 1.0}), [0.0, 1.0, 0.0], json!({}));
+        let friction = if coefficient > 0.0 { "Frictional" } else { "Frictionless" };
+        deck.set("contact_settings", json!({"mortar_type": format!("{kind}Contact{friction}")}));
+        deck.last_process()["contact_type"] = json!(friction);
+        let process = deck.processes_mut().last_mut().expect("the process of contact");
+        process["python_module"] = json!(format!("{}_contact_process", kind.to_lowercase()));
+        hold(
+            &mut deck,
+            "DISPLACEMENT",
+            [json!(format!("{}*t*t", 0.2 * coefficient)), json!("-0.1*(2.0*t - t*t)"), zero()],
+        );
+        hold(&mut deck, "ROTATION", [zero(), zero(), zero()]);
+        let ran = deck.run();
+        [0, 1].map(|c| ran.last_number(&format!("REACTION_{} of {REFERENCE}", ["X", "Y"][c])))
+    };
+    for coefficient in [0.0, 0.3] {
+        let [whole, penalty, nitsche] = ["ALM", "Penalty", "Nitsche"].map(|kind| force(kind, coefficient));
+        println!("μ {coefficient}: {whole:?}, penalty {penalty:?}, Nitsche {nitsche:?}");
+        assert!(whole[1] < -10.0, "{whole:?}");
+        let off = |other: [f64; 2]| (other[0] - whole[0]).hypot(other[1] - whole[1]) / whole[0].hypot(whole[1]);
+        assert!(off(penalty) < 2e-3, "{whole:?} {penalty:?}");
+        assert!(off(nitsche) < 0.015, "{whole:?} {nitsche:?}");
+    }
+}

@@ -170,6 +170,7 @@ fn a_deck_begins_with_a_restart_file_in_place_of_a_mesh() {
     let output = zelus(scratch.path(), &["run", DECK]);
     assert!(output.status.success(), "{}", said(&output));
     assert!(said(&output).contains("step 5,") && !said(&output).contains("step 4,"), "{}", said(&output));
+    assert!(!said(&output).contains("unknown-key"), "{}", said(&output));
     assert!(results(scratch.path()) == whole);
     deck["solver_settings"]["model_import_settings"]["restart_load_file_label"] = json!("0.7");
     std::fs::write(&path, deck.to_string()).expect("the deck");

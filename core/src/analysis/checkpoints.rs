@@ -77,6 +77,9 @@ impl Checkpoints {
     pub(super) fn name_mesh(&mut self, stages: &mut [StageDeck], mesh: Option<String>) {
         let import = stages.first_mut().and_then(|first| first.settings.get_path_mut(IMPORT));
         let (Some(import), Some(mesh)) = (import.filter(|_| self.mesh.is_none()), mesh) else { return };
+        if let Value::Object(members) = &mut import.value {
+            RESTART_KEYS.iter().for_each(|key| drop(members.remove(key)));
+        }
         let format = format_of(Path::new(&mesh)).map_or("mdpa", |format| format.name);
         for (key, text) in [("input_type", format), ("input_filename", mesh.as_str())] {
             if let Some(node) = import.get_path_mut(key) {
@@ -86,6 +89,10 @@ impl Checkpoints {
         self.mesh = Some(mesh);
     }
 }
+
+/// Keys that say where a saved run is, beside `input_filename`.
+const RESTART_KEYS: [&str; 4] =
+    ["restart_load_file_label", "load_restart_files_from_folder", "input_output_path", "io_foldername"];
 
 /// The saved run that `"input_type": "rest"` names: `PART__restart_files/PART_LABEL.rest`.
 ///

@@ -12,7 +12,9 @@ use super::contact_state::ContactState;
 use crate::active_set::{ActiveSetUpdate, Rules};
 use crate::adaptation::{FrictionRamp, PenaltyRamp, Uzawa};
 use crate::pairs::Multiplier;
-use crate::safeguards::{ContactWork, PenetrationCheck, STIFFER, StepSearch, coarse_impact, pierced, too_deep};
+use crate::safeguards::{
+    ContactWork, PenetrationCheck, STIFFER, StepSearch, coarse_impact, overlap_at_start, pierced, too_deep,
+};
 use crate::slave_nodes::SlaveStates;
 
 /// The loops of a step.
@@ -148,7 +150,8 @@ impl OuterLoops {
         if contact.setup.parameters.dynamic {
             self.work.of_step(part, |out| nodal_vectors(part, &contact.pairing.as_entities(), &DISPLACEMENT, out))?;
             if let Some(why) = self.work.too_much(part, &solver) {
-                return Ok(OuterLoop::Failed(why));
+                let start = overlap_at_start(part, &contact.states, &self.start_gaps, least);
+                return Ok(OuterLoop::Failed([Some(why), start].into_iter().flatten().collect()));
             }
         }
         let pressure = |slave, level| match formulation.multiplier {

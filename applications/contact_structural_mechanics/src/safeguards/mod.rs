@@ -19,4 +19,4 @@ pub(crate) use largest_penetration::{SHORTER, STIFFER, too_deep};
 pub(crate) use penetration_check::PenetrationCheck;
 pub(crate) use piercing::pierced;
 pub(crate) use step_search::StepSearch;
-pub(crate) use work::ContactWork;
+pub(crate) use work::{ContactWork, overlap_at_start};

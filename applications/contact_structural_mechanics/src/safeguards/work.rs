@@ -4,12 +4,13 @@
 //! zero is energy from nothing, as where a corner lies in between the nodes of a coarser slave side.
 
 use serde::{Deserialize, Serialize};
-use zelus_core::diagnostics::{Diagnostic, unfit};
+use zelus_core::diagnostics::{Diagnostic, coordinates, unfit};
 use zelus_core::model::ModelPart;
 use zelus_core::strategies::ENERGY_OF_MOTION;
 use zelus_core::{Result, StateMapper};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
+use crate::slave_nodes::SlaveStates;
 use crate::solver::ContactSolverSettings;
 
 /// Share of the energy of motion that contact may have made, or lost without friction, before a warning says so.
@@ -17,6 +18,19 @@ const WORTH_A_WARNING: f64 = 0.02;
 
 const REMEDY: &str = "make the finer of the two sides the slave, or refine the slave; shorten the step; \
      keep \"contact_stabilisation\" and \"impact_energy_tolerance\" of \"contact_settings\" at their defaults";
+
+/// Continues a message on energy from nothing with the node in contact whose mean gap was deepest below zero, by more than `least`, as
+/// its step began; `starts` has the weighted gaps then.
+pub(crate) fn overlap_at_start(part: &ModelPart, states: &SlaveStates, starts: &[f64], least: f64) -> Option<String> {
+    let active = states.iter().zip(starts).filter(|((_, state), _)| state.law.active && state.kinematics.area > 0.0);
+    let gaps = active.map(|((slave, state), start)| (states.mesh_node(slave), start / state.kinematics.area));
+    let (node, gap) = gaps.filter(|(_, gap)| *gap < -least).min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let place = coordinates(part.nodes.initial[node as usize]);
+    Some(format!(
+        ". The mean gap of node {} at {place} was {gap:.3e} as the step began, which a curved side beside coarse slave facets has where it just touches: begin the bodies {:.3e} farther apart",
+        part.nodes.ids[node as usize], -gap
+    ))
+}
 
 /// Sums over the present step.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]

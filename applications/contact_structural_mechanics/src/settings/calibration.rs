@@ -1,12 +1,14 @@
 //! Penalty, scale factor and search radius, from the bodies behind the interfaces and the deck.
 
+use std::collections::BTreeSet;
+
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
 
 use super::contact_settings::ContactSettings;
 use crate::friction;
-use crate::interface::{AlmParameters, Interface, Roles, alm_parameters};
+use crate::interface::{AlmParameters, Facet, Interface, Roles, alm_parameters};
 use crate::kratos::PenaltyUnit;
 use crate::law::{Augmentation, StepParameters};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
@@ -16,13 +18,13 @@ use crate::variables::{DYNAMIC_FACTOR, INITIAL_PENALTY, NODAL_H};
 /// A distance beyond everything.
 const FAR: f64 = 1e24;
 
-/// Distance beyond which a search takes no facets for a pair (length); `threshold` is that of [`calibrate`].
-pub(crate) fn limit(settings: &ContactSettings, threshold: f64) -> f64 {
-    if settings.search.check == GapCheck::CheckMapping { threshold } else { FAR }
+/// Distance beyond which a search takes no facets for a pair (length); `reach` is that of [`calibrate`].
+pub(crate) fn limit(settings: &ContactSettings, reach: f64) -> f64 {
+    if settings.search.check == GapCheck::CheckMapping { reach } else { FAR }
 }
 
-/// Writes penalty and scale factor into the part; gives the gap below which nodes and facets count as near, before factors (length),
-/// and the shared parameters of pairs, with those of `before` that do not come from the bodies.
+/// Writes penalty and scale factor into the part; gives the gap below which nodes and facets count as near, before factors, the reach of a
+/// search (both lengths), and the shared parameters of pairs, with those of `before` that do not come from the bodies.
 ///
 /// # Errors
 /// A coefficient of friction below zero.
@@ -32,7 +34,7 @@ pub(crate) fn calibrate(
     settings: &ContactSettings,
     before: &StepParameters,
     messages: &mut Vec<Diagnostic>,
-) -> Result<(f64, StepParameters)> {
+) -> Result<([f64; 2], StepParameters)> {
     let estimate = alm_parameters(part, interfaces, settings.estimate[0], settings.estimate[1]);
     let unit = PenaltyUnit::of(&part.ranks, &part.nodes.initial, part.info.domain_size == 2 && !settings.axisymmetric);
     // Only penalties of weighted gaps hold an area.
@@ -62,10 +64,12 @@ pub(crate) fn calibrate(
     part.info.values.insert("SCALE_FACTOR", chosen.scale_factor);
     part.nodes.values.values_mut(&INITIAL_PENALTY, 0).fill(chosen.penalty);
     part.nodes.values.values_mut(&DYNAMIC_FACTOR, 0).fill(1.0);
-    let threshold = mean_size(part, interfaces, Roles::Slave).max(mean_size(part, interfaces, Roles::Master));
+    // Facets of rigid shapes have the size that draws them: they reach as far, but do not say what is near.
+    let threshold = mean_size(part, interfaces, |facet| !facet.is_rigid());
+    let reach = mean_size(part, interfaces, |_| true);
     let parameters = StepParameters {
         segmentation: SegmentationSettings {
-            distance_threshold: if part.info.domain_size == 2 { FAR } else { limit(settings, threshold) },
+            distance_threshold: if part.info.domain_size == 2 { FAR } else { limit(settings, reach) },
             axisymmetric: settings.axisymmetric.then(|| thickness(part, interfaces)),
             ..settings.segmentation
         },
@@ -78,15 +82,25 @@ pub(crate) fn calibrate(
         slip_rule: friction::prepare(part, interfaces, &settings.friction, settings.formulation.friction, messages)?,
         ..before.clone()
     };
-    Ok((threshold, parameters))
+    Ok(([threshold, reach], parameters))
 }
 
-/// Mean of NODAL_H over the nodes of a side; of an open interface over all its nodes.
-fn mean_size(part: &ModelPart, interfaces: &[Interface], role: Roles) -> f64 {
+/// The larger of the means of NODAL_H over the nodes of both sides, of an open interface over all its nodes; over nodes of these facets
+/// alone.
+fn mean_size(part: &ModelPart, interfaces: &[Interface], counts: impl Fn(&Facet) -> bool) -> f64 {
     let sizes = part.nodes.values.values(&NODAL_H, 0);
-    let of = |i: &Interface| if i.open { i.nodes.clone() } else { i.nodes_of(role) };
-    let nodes: Vec<u32> = interfaces.iter().flat_map(of).collect();
-    nodes.iter().map(|&n| sizes[n as usize]).sum::<f64>() / nodes.len().max(1) as f64
+    let side = |role: Roles| {
+        let (mut sum, mut count) = (0.0, 0);
+        for interface in interfaces {
+            let of_side = |facet: &&Facet| (interface.open || facet.role == role) && counts(facet);
+            let facets = interface.facets.iter().filter(of_side);
+            let nodes: BTreeSet<u32> = facets.flat_map(|facet| facet.nodes.iter().copied()).collect();
+            sum += nodes.iter().map(|&node| sizes[node as usize]).sum::<f64>();
+            count += nodes.len();
+        }
+        sum / count.max(1) as f64
+    };
+    side(Roles::Slave).max(side(Roles::Master))
 }
 
 /// THICKNESS of the first facet that has one; 1 without.

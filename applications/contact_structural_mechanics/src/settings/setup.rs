@@ -23,6 +23,8 @@ pub(crate) struct Setup {
     pub parameters: Arc<StepParameters>,
     /// Gap below which nodes and facets count as near, before factors (length).
     pub threshold: f64,
+    /// Distance that a search reaches (length).
+    reach: f64,
     /// Smallest lengths and tractions that decide in the present state.
     pub tolerances: Tolerances,
 }
@@ -46,8 +48,8 @@ impl Setup {
             dynamic: false,
             nitsche: settings.nitsche,
         };
-        let (threshold, tolerances) = (f64::INFINITY, Tolerances::default());
-        Self { settings, parameters: Arc::new(parameters), threshold, tolerances }
+        let (threshold, reach, tolerances) = (f64::INFINITY, f64::INFINITY, Tolerances::default());
+        Self { settings, parameters: Arc::new(parameters), threshold, reach, tolerances }
     }
 
     /// Finds penalty, scale factor and search radius from the bodies behind the interfaces.
@@ -62,8 +64,8 @@ impl Setup {
     ) -> Result<()> {
         self.adapt_search(part);
         self.settings.given = self.settings.given.or_written(&part.info);
-        let (threshold, parameters) = calibrate(part, interfaces, &self.settings, &self.parameters, messages)?;
-        (self.threshold, self.parameters) = (threshold, Arc::new(parameters));
+        let (sizes, parameters) = calibrate(part, interfaces, &self.settings, &self.parameters, messages)?;
+        ([self.threshold, self.reach], self.parameters) = (sizes, Arc::new(parameters));
         Ok(())
     }
 
@@ -114,6 +116,6 @@ impl Setup {
 
     /// Distance beyond which a search takes no facets for a pair (length).
     pub(crate) fn limit(&self) -> f64 {
-        limit(&self.settings, self.threshold)
+        limit(&self.settings, self.reach)
     }
 }
