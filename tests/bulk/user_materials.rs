@@ -194,6 +194,56 @@ fn threads_do_not_change_the_answer() {
     assert_eq!(run(true), run(false));
 }
 
+/// A tangent that is no derivative of the stress is named before the run; those of the other tests here are not.
+#[test]
+fn a_wrong_tangent_is_named() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let sources = ["elastic", "plastic", "neo_hooke"];
+    let libraries: Vec<PathBuf> = sources.iter().filter_map(|source| library(&[source], &folder, false)).collect();
+    let [elastic, plastic, neo_hooke] = &*libraries else { return };
+    let right = |source: &Path, constants: &[f64]| (user(source, constants, 1), None);
+    let named = |name: &str, words: &'static str| {
+        let mut material = user(elastic, &[200.0, 0.3], 1);
+        material["UMAT_NAME"] = json!(name);
+        (material, Some(words))
+    };
+    let small = [
+        right(elastic, &[200.0, 0.3]),
+        right(plastic, &[200.0, 0.3, 0.1, 20.0]),
+        named("softens", "by 11.1 % of its largest entry, in dXX/dXX"),
+        named("turns", "in dYY/dXX"),
+    ];
+    let large = [right(neo_hooke, &[115.0, 77.0]), (user(elastic, &[200.0, 0.3], 1), None)];
+    let all = small.into_iter().map(|case| ("SmallDisplacement", "SmallStrain", case));
+    for (element, kind, (material, expected)) in all.chain(large.map(|case| ("TotalLagrangian", "FiniteStrain", case)))
+    {
+        for (shape, law) in
+            [(Shape::Hex8, "UMAT3DLaw"), (Shape::Quad4, "UMAT2DPlaneStrainLaw"), (Shape::Quad4, "UMATAxisym2DLaw")]
+        {
+            let grid = Grid::new(shape, &[1, 1, 1][..shape.dim()], |p| [p[0] + 1.0, p[1], p[2]]);
+            let revolves = if law.contains("Axisym") { "Axisym" } else { "" };
+            let (element, law) = (format!("{revolves}{element}Element"), format!("{kind}{law}"));
+            let mut deck = Deck::new(&grid, &element, &law, material.clone());
+            deck.fix(|p| p[1] == 0.0, [json!(0.0), json!(0.0), json!(0.0)]);
+            deck.fix(|p| p[1] == 1.0, [FREE, json!("0.001*t"), FREE]);
+            let written = deck.write();
+            let output = Command::new(env!("CARGO_BIN_EXE_zelus"))
+                .args(["check", "ProjectParameters.json"])
+                .current_dir(written.path())
+                .output()
+                .expect("the program starts");
+            let said = [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned()).concat();
+            assert_eq!(output.status.code(), Some(0), "{said}");
+            match expected {
+                Some(words) => {
+                    assert!(said.contains("warning[wrong-tangent]") && said.contains(words), "{law}: {said}")
+                }
+                None => assert!(!said.contains("wrong-tangent"), "{law}, {material}: {said}"),
+            }
+        }
+    }
+}
+
 /// Libraries that cannot be used are named before the run; one that ends the program names the element.
 #[test]
 fn mistakes_are_named() {

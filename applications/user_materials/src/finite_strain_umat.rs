@@ -12,6 +12,7 @@ use zelus_structural_mechanics::tensor::{IDENTITY, Tensor, congruent, inverse, p
 
 use crate::arguments::{Arguments, COMPONENTS};
 use crate::material::{PAIRS, PastPoint, UserMaterial, components, tensor, vector};
+use crate::tangent_check::warning;
 
 /// User material for finite strain.
 struct FiniteStrainUmat(UserMaterial);
@@ -129,16 +130,19 @@ register! { LawEntry "FiniteStrainUMAT3DLaw",
     about: "User material for solids of finite strain: subroutine UMAT of the library UDSM_NAME; UMAT_PARAMETERS, STATE_VARIABLES",
     source: "calling convention of Abaqus' UMAT",
     build: LawFactory::Space(FiniteStrainUmat::boxed::<6>),
+    warns: |properties, element| warning::<6>(properties, element, FiniteStrainUmat::boxed, false),
 }
 
 register! { LawEntry "FiniteStrainUMAT2DPlaneStrainLaw",
     about: "User material of finite strain in plane strain: subroutine UMAT of the library UDSM_NAME; UMAT_PARAMETERS, STATE_VARIABLES",
     source: "calling convention of Abaqus' UMAT, with NTENS = 4",
     build: LawFactory::PlaneStrain { plane: FiniteStrainUmat::boxed::<3>, whole: FiniteStrainUmat::boxed::<4> },
+    warns: |properties, element| warning::<4>(properties, element, FiniteStrainUmat::boxed, false),
 }
 
 register! { LawEntry "FiniteStrainUMATAxisym2DLaw",
     about: "User material of finite strain with axial symmetry: subroutine UMAT of the library UDSM_NAME; UMAT_PARAMETERS, STATE_VARIABLES",
     source: "calling convention of Abaqus' UMAT, with NTENS = 4",
     build: LawFactory::Axisymmetric(FiniteStrainUmat::boxed::<4>),
+    warns: |properties, element| warning::<4>(properties, element, FiniteStrainUmat::boxed, false),
 }

@@ -7,6 +7,7 @@ use zelus_structural_mechanics::laws::{ConstitutiveLaw, LawEntry, LawFactory, Ma
 
 use crate::arguments::{Arguments, COMPONENTS};
 use crate::material::{PastPoint, UserMaterial, components, places};
+use crate::tangent_check::warning;
 
 /// User material for small strain.
 struct SmallStrainUmat(UserMaterial);
@@ -98,16 +99,19 @@ register! { LawEntry "SmallStrainUMAT3DLaw",
     about: "User material for solids of small strain: subroutine UMAT of the library UDSM_NAME; UMAT_PARAMETERS, STATE_VARIABLES",
     source: "calling convention of Abaqus' UMAT",
     build: LawFactory::Space(SmallStrainUmat::boxed::<6>),
+    warns: |properties, element| warning::<6>(properties, element, SmallStrainUmat::boxed, true),
 }
 
 register! { LawEntry "SmallStrainUMAT2DPlaneStrainLaw",
     about: "User material in plane strain: subroutine UMAT of the library UDSM_NAME; UMAT_PARAMETERS, STATE_VARIABLES",
     source: "calling convention of Abaqus' UMAT, with NTENS = 4",
     build: LawFactory::PlaneStrain { plane: SmallStrainUmat::boxed::<3>, whole: SmallStrainUmat::boxed::<4> },
+    warns: |properties, element| warning::<4>(properties, element, SmallStrainUmat::boxed, true),
 }
 
 register! { LawEntry "SmallStrainUMATAxisym2DLaw",
     about: "User material with axial symmetry: subroutine UMAT of the library UDSM_NAME; UMAT_PARAMETERS, STATE_VARIABLES",
     source: "calling convention of Abaqus' UMAT, with NTENS = 4",
     build: LawFactory::Axisymmetric(SmallStrainUmat::boxed::<4>),
+    warns: |properties, element| warning::<4>(properties, element, SmallStrainUmat::boxed, true),
 }

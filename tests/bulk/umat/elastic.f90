@@ -23,6 +23,8 @@ subroutine umat(stress, statev, ddsdde, sse, spd, scd, rpl, ddsddt, drplde, drpl
    stress = stress + matmul(ddsdde, dstran)
    sse = 0.5d0*dot_product(stress, stran + dstran)
    if (nstatv > 0) statev(1) = statev(1) + 1
+   if (cmname == 'SOFTENS') ddsdde = 0.9d0*ddsdde
+   if (cmname == 'TURNS') ddsdde(1, 2) = 1.5d0*ddsdde(1, 2)
    if (cmname == 'STOPS') stop
    if (cmname == 'ABORTS') call abort()
    if (cmname == 'CRASHES') stress(int(props(3), 8)) = 0

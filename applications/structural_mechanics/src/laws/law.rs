@@ -250,6 +250,8 @@ registered_kind! {
         takes: &'static [&'static str] = &[],
         /// Whether its stress depends on the axes of the material.
         has_axes: bool = false,
+        /// A warning about properties of such a law before the run; the id is that of an element that has them.
+        warns: fn(&Properties, usize) -> Option<Diagnostic> = |_, _| None,
     }
 }
 

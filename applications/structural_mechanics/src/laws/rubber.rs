@@ -313,6 +313,7 @@ macro_rules! register_rubber {
             about: concat!($about, " for solids; ", $needs),
             source: $source,
             takes: $takes,
+            warns: |properties, _| $crate::laws::rubber::Rubber::instability(properties),
             build: $crate::laws::LawFactory::Space(|properties| $crate::laws::rubber::Rubber::boxed::<6>(&KIND, properties)),
         } };
 
@@ -320,6 +321,7 @@ macro_rules! register_rubber {
             about: concat!($about, " in plane strain; ", $needs),
             source: $source,
             takes: $takes,
+            warns: |properties, _| $crate::laws::rubber::Rubber::instability(properties),
             build: $crate::laws::LawFactory::PlaneStrain {
                 plane: |properties| $crate::laws::rubber::Rubber::boxed::<3>(&KIND, properties),
                 whole: |properties| $crate::laws::rubber::Rubber::boxed::<4>(&KIND, properties),
@@ -330,6 +332,7 @@ macro_rules! register_rubber {
             about: concat!($about, " with axial symmetry; ", $needs),
             source: $source,
             takes: $takes,
+            warns: |properties, _| $crate::laws::rubber::Rubber::instability(properties),
             build: $crate::laws::LawFactory::Axisymmetric(|properties| $crate::laws::rubber::Rubber::boxed::<4>(&KIND, properties)),
         } };
     };

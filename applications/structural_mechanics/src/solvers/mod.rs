@@ -4,7 +4,7 @@ mod dynamic_solver;
 mod explicit_solver;
 mod static_solver;
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use zelus_core::analysis::NodalVariable;
 use zelus_core::diagnostics::{Diagnostic, Report, Result};
@@ -13,7 +13,7 @@ use zelus_core::parameters::{Defaults, Node, Settings, Value};
 use zelus_core::registry::{all, find};
 
 use crate::elements::BANDS_AS_KRATOS;
-use crate::laws::{LawEntry, Rubber};
+use crate::laws::LawEntry;
 
 /// Settings of static solvers with their defaults.
 pub const STATIC_DEFAULTS: &str = include_str!("../../../../configs/solvers/static.json");
@@ -47,12 +47,16 @@ pub fn adopt(settings: &Settings, part: &mut ModelPart, report: &mut Report) -> 
 
 /// Warns of constants of elements' properties that their law does not take, and others do, and of constants with which it is not stable.
 fn warn_of_constants(part: &ModelPart, report: &mut Report) {
-    let of_elements: BTreeSet<usize> = part.elements.properties.iter().copied().collect();
-    let mut of_layers: Vec<&Properties> = of_elements.iter().filter_map(|id| part.properties.get(id)).collect();
-    while let Some(properties) = of_layers.pop() {
-        of_layers.extend(&properties.parts);
+    let mut first: BTreeMap<usize, usize> = BTreeMap::new();
+    part.elements.properties.iter().zip(&part.elements.ids).for_each(|(of, id)| {
+        first.entry(*of).or_insert(*id);
+    });
+    let mut of_layers: Vec<(&Properties, usize)> =
+        first.iter().filter_map(|(of, id)| Some((part.properties.get(of)?, *id))).collect();
+    while let Some((properties, element)) = of_layers.pop() {
+        of_layers.extend(properties.parts.iter().map(|layer| (layer, element)));
         let Some(law) = properties.law.as_deref().and_then(find::<LawEntry>) else { continue };
-        Rubber::instability(properties).into_iter().for_each(|problem| report.push(problem));
+        (law.warns)(properties, element).into_iter().for_each(|problem| report.push(problem));
         let tables = properties.tables.keys().map(|(_, of)| of);
         for name in properties.values.keys().chain(tables).filter(|name| !law.takes_constant(name)) {
             let Some(other) = all::<LawEntry>().into_iter().find(|other| other.takes_constant(name)) else { continue };
