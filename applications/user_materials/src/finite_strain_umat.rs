@@ -118,11 +118,7 @@ impl<const S: usize> ConstitutiveLaw<S> for FiniteStrainUmat {
     }
 
     fn internal(&self, state: &StrainState<'_, S>, variable: &str, out: &mut Vec<f64>) -> bool {
-        let is_known = variable == "STATE_VARIABLES";
-        if is_known {
-            out.extend(self.0.states(state.history));
-        }
-        is_known
+        self.0.internal(state.history, variable, out)
     }
 }
 

@@ -142,9 +142,13 @@ impl UserMaterial {
         }
     }
 
-    /// STATEV of a history.
-    pub fn states<'a>(&'a self, history: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
-        self.states.iter().zip(&history[STATES..]).map(|(start, change)| start + change)
+    /// STATEV of a history, as the values of STATE_VARIABLES; `false` for another variable.
+    pub fn internal(&self, history: &[f64], variable: &str, out: &mut Vec<f64>) -> bool {
+        let is_known = variable == "STATE_VARIABLES";
+        if is_known {
+            out.extend(self.states.iter().zip(&history[STATES..]).map(|(start, change)| start + change));
+        }
+        is_known
     }
 }
 
