@@ -22,6 +22,7 @@ EXAMPLES = {
     "hertz_line_contact": (f"--mirror x --inset 8 --factor 1 {N_MM}", "ProjectParameters.json"),
     "hertz_sphere": (f"--mirror x --mirror y --cut y=0.001 --factor 1 --inset 6 {N_MM}", "ProjectParameters.json"),
     "gear_pair": (f"--factor 1 --inset 12 {N_MM}", "ProjectParameters.json"),
+    "rubber_seal": (f"--mirror x --mirror y --factor 1 {N_MM}", "ProjectParameters.json"),
     "shrink_fit": (f"--mirror x --mirror y --factor 1 --width 1200 {N_MM}", "ProjectParameters.json"),
     "brake_disc": ("--revolve 270 --field TEMPERATURE --factor 1", "ProjectParameters.json"),
     "bars_in_thermal_contact": ("--field TEMPERATURE", "ProjectParameters.json"),

@@ -111,6 +111,40 @@ fn the_lug_behaves_as_its_page_says() {
     }
 }
 
+#[test]
+fn the_seal_is_squeezed_as_its_page_says() {
+    let scratch = run_page("seal.md");
+    let report = read_json(&scratch.path().join("run.json")).expect("a report");
+    let steps = report["steps"].as_array().expect("steps");
+    let force = |squeeze: f64| {
+        let step = steps.iter().find(|step| (step["time"].as_f64().expect("a time") - squeeze).abs() < 1e-9);
+        let pair = &step.expect("a step")["balance"]["pairs"][0];
+        -2.0 * pair["force"][1].as_f64().expect("a force")
+    };
+    let text = std::fs::read_to_string(root().join("docs/seal.md")).expect("the page");
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .map(|line| line.split('|').filter_map(|cell| cell.trim().parse().ok()).collect::<Vec<f64>>())
+        .filter(|row| row.len() == 3)
+        .collect();
+    assert_eq!(rows.len(), 4);
+    // REGRESSION: digits of the page
+    rows.iter().for_each(|row| assert!((force(row[0]) / row[1] - 1.0).abs() < 1e-3, "{} of {row:?}", force(row[0])));
+    // ANALYTIC: Hertz, up to terms of the squeeze over the radius
+    assert!((rows[0][1] / rows[0][2] - 1.0).abs() < 0.02, "{rows:?}");
+    let pressure = report["largest"]["CONTACT_PRESSURE"].as_f64().expect("a pressure");
+    assert!(
+        (force(1.0) / 7.401 - 1.0).abs() < 1e-3 && (pressure / 3.76 - 1.0).abs() < 2e-3,
+        "{} {pressure}",
+        force(1.0)
+    );
+    // ANALYTIC: the data are those of the constants in the deck
+    let fitted = std::fs::read_to_string(scratch.path().join("fitted.json")).expect("materials");
+    let moduli = fitted.split("\"OGDEN_MODULI\": [").nth(1).and_then(|rest| rest.split(',').next()).expect("moduli");
+    assert!((moduli.parse::<f64>().expect("a modulus") / 1.2 - 1.0).abs() < 2e-3, "{moduli}");
+    assert!(scratch.path().join("seal.png").is_file() && scratch.path().join("fitted.svg").is_file());
+}
+
 /// Tests run all commands of the gallery: the examples, each with its expected results, and the atlas.
 #[test]
 fn commands_of_the_gallery_are_those_of_tests() {
