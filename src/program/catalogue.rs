@@ -33,6 +33,7 @@ const GROUPS: [(&str, &[&str]); 5] = [
             "contact_formulation",
             "friction_law",
             "overclosure_law",
+            "cohesive_law",
             "tying_formulation",
             "penalty_adaptation",
             "contact_conductance",

@@ -49,6 +49,7 @@ pub(super) fn example(kind: &str, entry: &Entry) -> Result<Option<String>> {
         }
         "contact_conductance" => at("Parameters.conductance", json!([settings])),
         "overclosure_law" => at("Parameters.pressure_overclosure", settings),
+        "cohesive_law" => at("Parameters.cohesive", settings),
         "wear_law" => at("Parameters.wear_of_slave", json!([settings])),
         "rigid_shape" => at("Parameters.shape", settings),
         "penalty_adaptation" => {

@@ -9,6 +9,7 @@ mod blocks_of_case;
 mod body_balance;
 mod calculated_parameters;
 mod clearance;
+mod cohesive;
 mod condensation;
 mod corners;
 mod elastic_start;

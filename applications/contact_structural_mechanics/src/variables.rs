@@ -4,7 +4,7 @@ use zelus_core::model::VariableEntry;
 use zelus_core::{register_absent, register_material_range, register_usual_results, register_variable};
 
 register_usual_results! {
-    values: ["CONTACT_PRESSURE", "CONTACT_TRACTION", "CONTACT_GAP", "CONTACT_SLIP", "CONTACT_STATUS", "CONTACT_FORCE"],
+    values: ["CONTACT_PRESSURE", "CONTACT_TRACTION", "CONTACT_GAP", "CONTACT_SLIP", "CONTACT_STATUS", "CONTACT_FORCE", "COHESIVE_DAMAGE"],
     gauss: []
 }
 
@@ -41,6 +41,7 @@ register_variable! {
     pub CONTACT_GAP: f64 = "Gap at a slave node, negative in penetration; 0 where nothing faces it (length).";
     pub CONTACT_SLIP: [f64; 3] = "How far a slave node in contact with friction has slid in the step (length).";
     pub CONTACT_STATUS: f64 = "0 open, 1 in contact without sliding, 2 in contact and sliding, as every node in contact without friction; -1 at nodes that are no slaves.";
+    pub COHESIVE_DAMAGE: f64 = "Damage of the bond of a slave node: 0 sound, 1 failed or never bonded; 0 at nodes that are no slaves.";
     pub SLAVE_STATUS: f64 = "Of a slave node: 0 open, 1 in contact without friction, 2 sticking, 3 sliding against friction.";
     pub CONTACT_FORCE: [f64; 3] = "Force of contact on a node, of both sides.";
     kind SCALE_FACTOR: Scalar = "Factor that turns multipliers into tractions (eq. 4.11).";

@@ -59,13 +59,16 @@ pub(crate) enum ActivationCriterion<'a> {
 pub(crate) fn start(nodes: &Nodes, states: &mut SlaveStates, start: ActivationCriterion<'_>, rule: SlipRule) {
     let sizes = nodes.values.values(&NODAL_H, 0);
     let mesh_nodes: Vec<u32> = states.all().map(|slave| states.mesh_node(slave)).collect();
+    let bonded: Vec<bool> = states.all().map(|slave| states.holds(slave)).collect();
     states.for_each(|slave, state| {
         let gap = state.gap().unwrap_or(FAR);
-        let near = match start {
-            ActivationCriterion::GapBelow(range) => gap < range,
-            ActivationCriterion::ShareOfMeshSize => gap < SIMPLE_REACH * sizes[mesh_nodes[slave.place()] as usize],
-            ActivationCriterion::Touching(nodes) => nodes.contains(&slave) || state.law.active,
-        };
+        let near = bonded[slave.place()];
+        let near = near
+            || match start {
+                ActivationCriterion::GapBelow(range) => gap < range,
+                ActivationCriterion::ShareOfMeshSize => gap < SIMPLE_REACH * sizes[mesh_nodes[slave.place()] as usize],
+                ActivationCriterion::Touching(nodes) => nodes.contains(&slave) || state.law.active,
+            };
         state.law.active = near && !state.kinematics.isolated;
         state.kinematics.start_gap = if near { gap } else { 0.0 };
         let size = sizes[mesh_nodes[slave.place()] as usize];

@@ -64,6 +64,7 @@ impl ActiveSetUpdate {
         messages: &mut Vec<Diagnostic>,
     ) -> SetChange {
         let rules = Rules::of(setup);
+        states.count_iteration();
         rules.follow(part, states, setup);
         let (mut decisions, before) = rules.decide(part, states, &mut self.released);
         if !setup.by_points() {
@@ -73,7 +74,10 @@ impl ActiveSetUpdate {
             // With decisions at integration points each evaluation of forces decides: nodes only report it.
             forced_points::hold_turned(states, &mut decisions, &before, setup.tolerances);
         }
-        rules.apply(part, states, &decisions, &before)
+        let change = rules.apply(part, states, &decisions, &before);
+        // Surfaces without bond carry what their new states say.
+        setup.find_bonds(states);
+        change
     }
 
     /// Finds pressures and tractions in the present state, and holds the set.
@@ -102,6 +106,7 @@ impl ActiveSetUpdate {
             SetOutcome::Failed(why) => OuterLoop::Failed(why),
             SetOutcome::Change => {
                 rules.apply(part, states, &decisions, &before);
+                setup.find_bonds(states);
                 self.find_tangents(part, states, setup);
                 OuterLoop::Continue
             }

@@ -12,7 +12,9 @@ use crate::friction::slip;
 use crate::interface::SlaveIndex;
 use crate::law::constrained_multiplier::along_free_tangents;
 use crate::law::rules::{self, Decision, SlaveNumbers};
-use crate::law::{Augmentation, MultiplierConstraint, NodeState, Sliding, SoftTangent, StepParameters};
+use crate::law::{
+    Augmentation, FrictionLaw, MultiplierConstraint, NodeState, OverclosureLaw, Sliding, SoftTangent, StepParameters,
+};
 use crate::mortar::{tangent, tangential};
 use crate::pairs::{Formulation, Multiplier};
 use crate::settings::Setup;
@@ -36,14 +38,24 @@ impl<'a> Rules<'a> {
         Self { formulation: setup.settings.formulation, parameters: &setup.parameters, tolerances: setup.tolerances }
     }
 
-    /// Takes what laws of friction that depend on the sliding, and of soft contact, say in the present state of every slave node.
+    /// Takes what laws of friction that depend on the sliding, and of soft contact and of bonds, say in the present state of every slave node.
     pub(super) fn follow(self, part: &ModelPart, states: &mut SlaveStates, setup: &Setup) {
         let friction = Some(self.parameters.friction_law);
         let friction = friction.filter(|law| law.depends_on_sliding && self.formulation.frictional());
         let soft = setup.settings.overclosure.as_deref();
-        if friction.is_none() && soft.is_none() {
-            return;
+        if friction.is_some() || soft.is_some() {
+            self.follow_laws(part, states, (friction, soft));
         }
+        setup.find_bonds(states);
+    }
+
+    /// Takes what these laws of friction and of soft contact say in the present state of every slave node.
+    fn follow_laws(
+        self,
+        part: &ModelPart,
+        states: &mut SlaveStates,
+        (friction, soft): (Option<&FrictionLaw>, Option<&dyn OverclosureLaw>),
+    ) {
         let slaves = states.slaves();
         let all: Vec<SlaveNumbers> = slaves.iter().map(|&slave| self.numbers(part, states, slave)).collect();
         for (&slave, numbers) in slaves.iter().zip(&all) {
@@ -258,6 +270,7 @@ impl<'a> Rules<'a> {
             scale_factor: parameters.scale_factor,
             tangent_factor: parameters.tangent_factor,
             tolerances,
+            bond: states.bond(slave).and_then(|bond| bond.numbers(normal)),
         }
     }
 }

@@ -22,7 +22,7 @@ use crate::friction;
 use crate::friction::slip;
 use crate::interface::{Bodies, SlaveIndex, check_nodes, find_nodal_h};
 use crate::kratos::FirstIterateTangent;
-use crate::law::StepParameters;
+use crate::law::{NodeState, StepParameters};
 use crate::results::{heat, joins, pair_states, write_forces};
 use crate::safeguards::{FreeBodies, InterfacesInContact, SHORTER, near_nodes, too_deep};
 use crate::settings::{ContactSettings, Setup};
@@ -208,6 +208,7 @@ impl Interaction for ContactInteraction {
         if self.acting && self.contact.setup.settings.explicit.is_some() {
             self.explicit_depth(part)?;
         }
+        self.contact.states.release_failed();
         self.loops.accept(part, &mut self.contact);
         if self.acting {
             self.in_contact.accept(&self.contact.pairing.slaves_by_interface(), &self.contact.states);
@@ -224,7 +225,9 @@ impl Interaction for ContactInteraction {
         if formulation.frictional() {
             let parameters = &self.contact.setup.parameters;
             let states = &self.contact.states;
-            friction::meet_bounds(&mut part.slave_nodes, states, formulation.multiplier, parameters.scale_factor);
+            if !states.has_bonds() {
+                friction::meet_bounds(&mut part.slave_nodes, states, formulation.multiplier, parameters.scale_factor);
+            }
             if !self.warned_of_friction {
                 let warning = friction::warn_of_pushing(part, &self.contact.states, formulation.multiplier, parameters);
                 self.warned_of_friction = warning.is_some();
@@ -292,7 +295,12 @@ impl Interaction for ContactInteraction {
         let ContactState { setup: Setup { settings, parameters, tolerances, .. }, pairing, states, .. } = &self.contact;
         let multiplier = settings.formulation.multiplier;
         let of_node = |slave: SlaveIndex, state: &SlaveState| {
-            heat(state.law.traction, slip(part, states, slave, multiplier, parameters), state.kinematics.area)
+            if let Some(bond) = states.bond(slave) {
+                return state.kinematics.area * bond.dissipated();
+            }
+            let slides = state.contact() == NodeState::Slip;
+            let slid = || slip(part, states, slave, multiplier, parameters);
+            if slides { heat(state.law.traction, slid(), state.kinematics.area) } else { 0.0 }
         };
         let (parts, frictional) = ((&settings.parts, &settings.slaves), settings.formulation.frictional());
         let slaves = pairing.slaves_by_interface();
@@ -372,6 +380,7 @@ impl ActiveSet for ContactInteraction {
     fn after_prediction(&mut self, part: &mut ModelPart) -> Result<()> {
         if self.acting {
             self.contact.integrate(part);
+            self.contact.setup.find_bonds(&mut self.contact.states);
             self.set.find_tangents(part, &mut self.contact.states, &self.contact.setup);
             self.contact.publish(part);
         }

@@ -12,6 +12,7 @@ use crate::friction;
 use crate::interface::{
     NormalPatches, Roles, SlaveIndex, add_contact_part, interfaces, unlike_sections, warnings_of_pairs,
 };
+use crate::law::MultiplierConstraints;
 use crate::pairing::{Pairing, PairingState, integrate, take_normals_of_masters};
 use crate::pairs::Pair;
 use crate::results::{InterfaceSurfaces, write_masters, write_states};
@@ -96,6 +97,9 @@ impl ContactState {
         }
         self.states = SlaveStates::of(part, table, formulation.columns());
         self.states.for_all(|state| state.law.active = false);
+        if let Some(surface) = &self.setup.settings.surface {
+            self.states.add_bonds(surface.cohesive.is_some());
+        }
         self.states.take_normals(&self.pairing.normals, &part.nodes.current);
         self.states.set_slaves(self.pairing.slaves());
         self.import_multipliers(part);
@@ -277,6 +281,17 @@ impl ContactState {
         Ok(())
     }
 
+    /// Decides on bonds of slave nodes that contact finds for the first time, and finds their tractions.
+    fn make_bonds(&mut self) {
+        let Some(surface) = &self.setup.settings.surface else { return };
+        let interfaces = self.pairing.interfaces.iter().zip(self.pairing.slaves_by_interface());
+        let own = interfaces.filter(|(interface, _)| surface.bonds(&interface.key));
+        let mut bonded: Vec<SlaveIndex> = own.flat_map(|(_, slaves)| slaves).collect();
+        bonded.sort_unstable();
+        self.states.make_bonds(&bonded);
+        self.setup.find_bonds(&mut self.states);
+    }
+
     /// Finds the slave nodes that supports hold together with their masters.
     fn hold(&mut self, part: &ModelPart) {
         if self.setup.settings.mind_supports {
@@ -289,12 +304,16 @@ impl ContactState {
             let said = self.supported_nodes.constrain(part, &mut self.states, self.setup.settings.formulation, facets);
             self.messages.extend(said);
         }
+        // Bonds give: they determine the tractions of all components, whatever supports do.
+        if self.states.has_bonds() {
+            self.states.for_each(|_, state| state.law.constraints = MultiplierConstraints::default());
+        }
     }
 
     /// Ends a stage: the states go to the assembly, and to flags and columns.
     pub(super) fn publish(&mut self, part: &mut ModelPart) {
         let formulation = self.setup.settings.formulation;
-        if formulation.frictional() && formulation.multiplier.is_unknown() {
+        if formulation.frictional() && formulation.multiplier.is_unknown() && !self.states.has_bonds() {
             corner_nodes::constrain(&mut self.states);
         }
         self.pairing.set_states(&self.states);
@@ -365,6 +384,8 @@ impl ContactState {
         };
         let rule = self.setup.parameters.slip_rule;
         activation::start(&part.nodes, &mut self.states, start, rule);
+        self.make_bonds();
+        let settings = &self.setup.settings;
         if self.setup.by_points() {
             forced_points::hold_touching(&mut self.states, &self.pairing.slaves_by_interface(), self.setup.tolerances);
         }

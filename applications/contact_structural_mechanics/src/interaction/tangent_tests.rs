@@ -7,13 +7,19 @@ use zelus_core::entities::{LocalSystems, LocalUnknown, Request, require_kind};
 use zelus_core::geometry::{ExactFacet, ExactSurface, Shape, reversed};
 use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{EntityRole, ModelPart, Nodes};
+use zelus_core::parameters::Document;
+use zelus_core::registry::named;
 use zelus_core::vector3::{add, norm};
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NORMAL};
 
 use crate::active_set::{Rules, find_tangents};
 use crate::flags::SLIP;
 use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex};
-use crate::law::{Augmentation, Margin, Multiplier, Nitsche, NormalVariation, SlipRule, StepParameters};
+use crate::law::{
+    Augmentation, BondState, CohesiveLaw, CohesiveLawEntry, Margin, Multiplier, Nitsche, NormalVariation, Rubbing,
+    SlipRule, StepParameters, SurfaceLaw,
+};
+use crate::laws::bonded::BONDED;
 use crate::laws::friction::COULOMB;
 use crate::mortar::tests::Noise;
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
@@ -35,6 +41,8 @@ struct Contact {
     patches: Patches,
     normals: Arc<NormalPatches>,
     states: SlaveStates,
+    /// Law of bonds, and the states that were accepted last.
+    bonds: Option<(Option<Box<dyn CohesiveLaw>>, Rubbing, fn(usize) -> BondState)>,
 }
 
 /// A node whose multiplier is zero.
@@ -214,8 +222,17 @@ impl Contact {
         let mut states = SlaveStates::of(&part, table, formulation.columns());
         states.set_slaves(patches.slaves(interfaces));
         states.read_friction(&part.nodes, &COULOMB);
-        let mut contact =
-            Self { formulation, parameters, part, interface, blocks: Vec::new(), patches, normals, states };
+        let mut contact = Self {
+            formulation,
+            parameters,
+            part,
+            interface,
+            blocks: Vec::new(),
+            patches,
+            normals,
+            states,
+            bonds: None,
+        };
         contact.make_blocks();
         contact.leave_start();
         contact
@@ -353,8 +370,29 @@ impl Contact {
             let rules = Rules { formulation, parameters: &parameters, tolerances: Tolerances::default() };
             find_tangents(&self.part, &mut self.states, rules, false, &mut BTreeMap::new());
         }
+        if self.bonds.is_some() {
+            self.find_bonds();
+        }
         let states = Arc::new(self.states.clone());
         self.blocks.iter_mut().for_each(|block| block.set_states(states.clone()));
+    }
+
+    /// Finds the tractions of bonds over all pairs of a slave node.
+    fn find_bonds(&mut self) {
+        let (law, rubbing, last) = self.bonds.as_ref().expect("bonds");
+        self.states.all().for_each(|slave| self.states.set_accepted(slave, last(slave.place())));
+        let area = self.sums(|integral, j| [integral.area[j], integral.gap[j], 0.0]);
+        let [trial, sliding] =
+            [self.sums(|integral, j| integral.trial[j]), self.sums(|integral, j| integral.sliding[j])];
+        let means = |sum: [f64; 3], slave: SlaveIndex| sum.map(|x| x / area[slave.place()][0]);
+        self.states.for_each(|slave, state| {
+            (state.kinematics.area, state.kinematics.weighted_gap) = (area[slave.place()][0], area[slave.place()][1]);
+            state.law.trial = means(trial[slave.place()], slave);
+        });
+        self.states.open_bonds(&|slave| means(sliding[slave.place()], slave));
+        self.states.make_bonds(&[]);
+        let law = SurfaceLaw { cohesive: law.as_deref(), rubbing: *rubbing };
+        self.states.find_bonds(law, self.parameters.tangent_factor);
     }
 
     fn integrals(&self, block: &dyn ContactBlock) -> Vec<Integral> {
@@ -450,6 +488,58 @@ fn tangents_below_a_rigid_shape_match_differences() {
             check_contact(contact, &format!("{name} {space}"), space);
         }
     }
+}
+
+/// Bonds that are sound, are being damaged, unload, and have failed, with friction where they are closed; a node without contact among
+/// them. The branch of each node is that of its accepted state.
+#[test]
+fn tangents_of_bonds_match_differences() {
+    let laws = [
+        r#"{"law": "bilinear", "normal_stiffness": 20.0, "shear_stiffness": 12.0, "normal_strength": 0.4, "shear_strength": 0.3,
+            "normal_energy": 0.7, "shear_energy": 2.0, "mixed_mode_exponent": 1.7}"#,
+        r#"{"law": "exponential", "normal_stiffness": 20.0, "shear_stiffness": 12.0, "normal_strength": 0.4, "shear_strength": 0.3,
+            "normal_energy": 0.7, "shear_energy": 2.0, "mixed_mode_exponent": 1.7}"#,
+        r#"{"law": "adhesion", "normal_stiffness": 20.0, "normal_strength": 0.2, "normal_energy": 0.7}"#,
+    ];
+    let states: [(&str, fn(usize) -> BondState); 4] = [
+        ("open", |_| BondState { bonded: Some(true), start: -0.4, ..BondState::default() }),
+        ("closed", |_| BondState { bonded: Some(true), start: 0.4, sliding: [0.09, 0.0, 0.0], ..BondState::default() }),
+        ("unloads", |at| BondState {
+            bonded: Some(true),
+            start: [-0.4, 0.3][at % 2],
+            damage: 0.99,
+            ..BondState::default()
+        }),
+        ("failed", |_| BondState {
+            bonded: Some(false),
+            start: 0.5,
+            damage: 1.0,
+            friction: [0.05, 0.0, 0.0],
+            ..BondState::default()
+        }),
+    ];
+    for (law, space) in laws.iter().flat_map(|law| [(law, 2), (law, 3)]) {
+        for (word, accepted) in states {
+            let document = Document::from_str(law, "law.json").expect("JSON");
+            let (entry, settings) = named::<CohesiveLawEntry>(&document.root, "law").expect("a law");
+            let law_of_bonds = (entry.build)(&settings).expect("a law");
+            check_bonds(space, (Some(law_of_bonds), Rubbing::default(), accepted), &format!("{law} {word}"));
+        }
+    }
+    // Friction by direction, elastic up to a slip or not.
+    for elastic_slip in [None, Some(0.01), Some(10.0)] {
+        let rubbing = Rubbing { elastic_slip, direction: [0.6, 0.8, 0.0], ratio: 0.4 };
+        let (word, accepted) = states[3];
+        check_bonds(3, (None, rubbing, accepted), &format!("{rubbing:?} {word}"));
+    }
+}
+
+fn check_bonds(space: usize, bonds: (Option<Box<dyn CohesiveLaw>>, Rubbing, fn(usize) -> BondState), what: &str) {
+    let mut contact = Contact::of(&BONDED, space, surfaces(space, false), Augmentation::Node);
+    contact.states.add_bonds(true);
+    contact.bonds = Some(bonds);
+    contact.follow();
+    check_contact(contact, &format!("{what} {space}"), space);
 }
 
 /// Corners of such facets have shares below zero of those that they overlap in part.

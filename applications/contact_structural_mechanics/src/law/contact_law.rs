@@ -23,12 +23,15 @@ pub struct NodeInputs<T> {
     pub multiplier: [T; 3],
     /// History traction P R t° of the last accepted state, rotated with the facet (force per area).
     pub history: [T; 3],
+    /// Tangential opening P R w_t° of a bond in the last accepted state, rotated with the facet (length).
+    pub sliding: [T; 3],
     /// Area that the pair has of the node.
     pub area: T,
 }
 
 impl NodeInputs<f64> {
-    /// The same inputs, those that follow from the positions of nodes as variables: gap, slip, normal, history traction, area.
+    /// The same inputs, those that follow from the positions of nodes as variables: gap, slip, normal, history traction, area;
+    /// the opening of a bond as one, which tells whether it has derivatives and no more.
     pub fn seeded(&self) -> NodeInputs<Active> {
         let vector = |first: usize, v: [f64; 3]| std::array::from_fn(|c| Active::variable(v[c], first + c));
         NodeInputs {
@@ -38,6 +41,7 @@ impl NodeInputs<f64> {
             multiplier: constant(self.multiplier),
             history: vector(7, self.history),
             area: Active::variable(self.area, 10),
+            sliding: self.sliding.map(|x| Active::variable(x, 11)),
         }
     }
 }
@@ -87,7 +91,7 @@ pub enum SlipMeasure {
 /// #     state: NodeState::Slip, penalty: 1.0, compliance: 0.0, uzawa_pressure: 0.0, stiffness: 1.0, area: 1.0,
 /// #     dynamic_factor: 1.0, friction: Bound { coefficient: 0.0, threshold: 0.0 }, tangent: [0.0; 3],
 /// #     rotation: DirectionRotation::default(), constraints: Default::default(), constraint_weight: 1.0,
-/// #     history_traction: [0.0; 3], traction: [0.0; 3],
+/// #     history_traction: [0.0; 3], history_sliding: [0.0; 3], bond: None, traction: [0.0; 3],
 /// # };
 /// // A slave node in contact, of area 1, whose pair has closed by 0.25.
 /// assert!(node.state.is_active());
@@ -98,6 +102,7 @@ pub enum SlipMeasure {
 ///     area: 1.0,
 ///     slip: [0.0; 3],
 ///     history: [0.0; 3],
+///     sliding: [0.0; 3],
 /// };
 /// let law = AlmFrictionless { scale_factor: 10.0, augmentation: Augmentation::Node };
 /// let forces = law.evaluate(&node, &inputs);

@@ -14,6 +14,8 @@
 //! unit tangent. All but D, M, g̃, s (and normals given with derivatives) are constant in the tangent.
 
 mod augmentation;
+pub mod bond;
+mod cohesive_law;
 pub mod constrained_multiplier;
 mod contact_law;
 mod friction_law;
@@ -22,11 +24,14 @@ mod multiplier;
 pub mod nitsche;
 mod node_state;
 mod overclosure_law;
+pub mod rubbing;
 pub mod rules;
 mod slave_node;
 mod step_parameters;
 
 pub use augmentation::Augmentation;
+pub use bond::{Bond, BondOpening, BondState, BondTangent, SurfaceLaw, SurfaceNumbers};
+pub use cohesive_law::{CohesiveLaw, CohesiveLawEntry, MakeCohesiveLaw};
 pub use contact_law::{ContactLaw, NodeForces, NodeInputs, NodeLaw, SlipMeasure};
 pub use friction_law::{Bound, FrictionLaw, FrictionLawEntry, Sliding, find_friction_law};
 pub use mesh_tying::MeshTying;
@@ -34,7 +39,8 @@ pub use multiplier::Multiplier;
 pub use nitsche::{Nitsche, NitscheVariant, NodeOfPoints, PointForces, SlaveFace};
 pub use node_state::{DirectionRotation, MultiplierConstraint, MultiplierConstraints, NodeState, SupportAxes};
 pub use overclosure_law::{MakeOverclosureLaw, Overclosure, OverclosureLaw, OverclosureLawEntry, SoftTangent};
+pub use rubbing::Rubbing;
 pub(crate) use rules::TURNED;
-pub use rules::{Decision, Margin, SlaveNumbers, SlipRule};
+pub use rules::{BondNumbers, Decision, Margin, SlaveNumbers, SlipRule};
 pub use slave_node::SlaveNode;
 pub use step_parameters::{NormalVariation, StepParameters};

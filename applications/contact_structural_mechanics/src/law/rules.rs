@@ -100,6 +100,23 @@ pub struct SlaveNumbers {
     pub tangent_factor: f64,
     /// Smallest lengths and tractions that decide; gaps and slips below are zero already.
     pub tolerances: Tolerances,
+    /// Its bond, where the deck has a law of bonds.
+    pub bond: Option<BondNumbers>,
+}
+
+/// Tractions and state of a slave node by its bond.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BondNumbers {
+    /// Normal traction, tension positive (force per area).
+    pub normal: f64,
+    /// Normal traction that it would have if it were closed (force per area).
+    pub closed: f64,
+    /// Tangential traction (force per area).
+    pub tangential: [f64; 3],
+    /// Whether a bond held at the start of the step; such a node stays in contact until its end.
+    pub holds: bool,
+    /// Whether it has failed, is closed and slides.
+    pub slides: bool,
 }
 
 impl SlaveNumbers {
@@ -294,6 +311,26 @@ pub fn penalty_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
     }
 }
 
+/// Decides for a node with a law of bonds: the bond itself tells.
+pub fn cohesive(node: &SlaveNumbers, _rule: SlipRule) -> Decision {
+    let Some(bond) = node.bond else { return inactive(node, 0.0) };
+    if !bond.holds && !node.presses(bond.closed) {
+        return inactive(node, bond.closed);
+    }
+    let (entered, was_sliding) = (!node.state.is_active(), node.state == NodeState::Slip);
+    let whole = add(scale(node.normal, bond.closed), bond.tangential);
+    let slip_changed = !entered && was_sliding != bond.slides && !node.friction.is_smooth();
+    Decision {
+        pressure: if entered { bond.closed } else { bond.normal },
+        traction: bond.tangential,
+        state: if bond.slides { NodeState::Slip } else { NodeState::Stick },
+        changed: entered,
+        slip_changed,
+        multiplier: entered.then(|| scale(whole, 1.0 / node.scale_factor)),
+        excess: if entered || slip_changed { norm(whole) } else { 0.0 },
+    }
+}
+
 /// Decides for a node whose integration points have decided on contact already: `trial` is the mean of their tractions.
 pub fn of_points(node: &SlaveNumbers) -> Decision {
     let pressure = dot(node.trial, node.normal);
@@ -351,6 +388,7 @@ mod tests {
             scale_factor: 4.0,
             tangent_factor: 0.5,
             tolerances: Tolerances::of(1.0, 4.0, 0.0),
+            bond: None,
         }
     }
 

@@ -1,5 +1,6 @@
 //! Constants of a slave node during an assembly.
 
+use super::bond::BondTangent;
 use super::friction_law::Bound;
 use super::node_state::{DirectionRotation, MultiplierConstraints, NodeState};
 
@@ -33,6 +34,10 @@ pub struct SlaveNode {
     pub constraint_weight: f64,
     /// Tangential traction t° of the last accepted state, where a law has a history traction (force per area).
     pub history_traction: [f64; 3],
+    /// Tangential opening w_t° of a bond in the last accepted state (length).
+    pub history_sliding: [f64; 3],
+    /// Its bond, where the deck has a law of bonds.
+    pub bond: Option<BondTangent>,
     /// Traction of all pairs of the node, where a law computes it before its pairs (force per area).
     pub traction: [f64; 3],
 }

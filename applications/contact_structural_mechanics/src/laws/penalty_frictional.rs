@@ -72,7 +72,7 @@ impl NodeLaw for PenaltyFrictional {
 }
 
 /// Pair by pair.
-const BY_PAIR: Formulation = Formulation {
+pub(super) const BY_PAIR: Formulation = Formulation {
     friction: Friction::Coulomb,
     ..Formulation::of::<PenaltyFrictional>(
         "PenaltyFrictionalMortarContactCondition",

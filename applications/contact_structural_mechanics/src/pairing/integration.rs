@@ -22,6 +22,8 @@ struct NodeIntegrals {
     gap_by_area: f64,
     /// Weighted slip (length times area).
     slip: [f64; 3],
+    /// Weighted tangential opening of bonds (length times area).
+    sliding: [f64; 3],
     /// Area times trial traction.
     trial: [f64; 3],
     /// Area times history traction.
@@ -36,19 +38,21 @@ impl NodeIntegrals {
         self.area += area;
         self.gap_by_area += gap * area;
         self.slip = add(self.slip, integral.slip[local]);
+        self.sliding = add(self.sliding, integral.sliding[local]);
         self.trial = add(self.trial, integral.trial[local]);
         self.history_traction = add(self.history_traction, integral.history_traction[local]);
     }
 }
 
-impl Summands<12> for NodeIntegrals {
-    fn numbers(&self) -> [f64; 12] {
-        let [[a, b, c], [d, e, f], [g, h, i]] = [self.slip, self.trial, self.history_traction];
-        [self.gap, self.area, self.gap_by_area, a, b, c, d, e, f, g, h, i]
+impl Summands<15> for NodeIntegrals {
+    fn numbers(&self) -> [f64; 15] {
+        let [[a, b, c], [d, e, f], [g, h, i], [j, k, l]] = [self.slip, self.trial, self.history_traction, self.sliding];
+        [self.gap, self.area, self.gap_by_area, a, b, c, d, e, f, g, h, i, j, k, l]
     }
 
-    fn of([gap, area, gap_by_area, a, b, c, d, e, f, g, h, i]: [f64; 12]) -> Self {
-        Self { gap, area, gap_by_area, slip: [a, b, c], trial: [d, e, f], history_traction: [g, h, i] }
+    fn of([gap, area, gap_by_area, a, b, c, d, e, f, g, h, i, j, k, l]: [f64; 15]) -> Self {
+        let [slip, trial, history_traction, sliding] = [[a, b, c], [d, e, f], [g, h, i], [j, k, l]];
+        Self { gap, area, gap_by_area, slip, sliding, trial, history_traction }
     }
 }
 
@@ -84,7 +88,7 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
 
     let formulation = setup.settings.formulation;
     states.for_each(|node, state| {
-        let NodeIntegrals { gap, area, gap_by_area, slip, trial, history_traction } = sums[node];
+        let NodeIntegrals { gap, area, gap_by_area, slip, trial, history_traction, .. } = sums[node];
         let by_area = |sum: [f64; 3]| if area > 0.0 { sum.map(|t| t / area) } else { [0.0; 3] };
         (state.kinematics.area, state.kinematics.weighted_gap, state.kinematics.isolated) =
             (area, gap, state.kinematics.pairs == 0);
@@ -104,6 +108,10 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
         if setup.by_points() {
             state.law.history_traction = by_area(history_traction);
         }
+    });
+    states.open_bonds(&|slave| {
+        let NodeIntegrals { area, sliding, .. } = sums[slave];
+        if area > 0.0 { sliding.map(|w| w / area) } else { [0.0; 3] }
     });
     let around = setup.parameters.segmentation.revolution();
     let weight = |n: u32| around.map_or(1.0, |per_radius| per_radius * part.nodes.current[n as usize][0]);

@@ -62,6 +62,8 @@ pub struct PairKinematics<'a, T: Real> {
     gap: Nodal<T>,
     slip: Nodal<[T; 3]>,
     history: Nodal<[T; 3]>,
+    /// Empty where no bond has one.
+    sliding: Nodal<[T; 3]>,
     area: Nodal<T>,
 }
 
@@ -84,12 +86,20 @@ impl<'a, T: Real> PairKinematics<'a, T> {
             }
             _ => [T::zero(); 3],
         };
+        let sliding = |j: usize| match &rotation {
+            Some(rotation) => tangential(rotation.apply(constant(nodes[j].history_sliding)), normals[j]),
+            None => [T::zero(); 3],
+        };
         let slaves = geometry.slave.len();
         let slip = history.slip(measure, geometry, operators, rotation.as_ref());
         let gap = weighted_gap(operators, &geometry.slave, &geometry.master, normals);
-        let mut out = Self { geometry, operators, gap, slip, history: Nodal::empty(), area: Nodal::empty() };
+        let (history, sliding_of_bonds, area) = (Nodal::empty(), Nodal::empty(), Nodal::empty());
+        let mut out = Self { geometry, operators, gap, slip, history, sliding: sliding_of_bonds, area };
         // In place: with derivatives they are too large to be moved about.
         out.history.refill(slaves, history_traction);
+        if nodes.iter().any(|node| node.history_sliding != [0.0; 3]) {
+            out.sliding.refill(slaves, sliding);
+        }
         out.area.refill(slaves, |j| operators.d[j].iter().fold(T::zero(), |sum, d| sum + *d));
         out
     }
@@ -103,6 +113,7 @@ impl<'a, T: Real> PairKinematics<'a, T> {
             normal: self.geometry.nodal_normals[j],
             multiplier,
             history: self.history[j],
+            sliding: self.sliding.get(j).copied().unwrap_or([T::zero(); 3]),
             area: self.area[j],
         }
     }

@@ -269,12 +269,16 @@ impl PairSystem<'_> {
         }
     }
 
-    /// Weighted slips and areas times trial tractions of the slave nodes of a pair with these operators.
-    pub fn slip_and_trial(&self, operators: &Operators<f64>, visit: &mut dyn FnMut(usize, [f64; 3], Option<[f64; 3]>)) {
+    /// Inputs of the law at the slave nodes of a pair with these operators, and areas times trial tractions.
+    pub fn inputs_and_trial(
+        &self,
+        operators: &Operators<f64>,
+        visit: &mut dyn FnMut(usize, &NodeInputs<f64>, Option<[f64; 3]>),
+    ) {
         let pair = PairKinematics::new(self.law, self.geometry, operators, self.nodes, self.history);
         for (j, node) in self.nodes.iter().enumerate() {
             let inputs = pair.inputs(j, [0.0; 3]);
-            visit(j, inputs.slip, self.law.weighted_trial(node, &inputs));
+            visit(j, &inputs, self.law.weighted_trial(node, &inputs));
         }
     }
 }

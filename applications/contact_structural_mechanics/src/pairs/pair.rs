@@ -102,6 +102,8 @@ pub struct Integral {
     pub gap: [f64; MOST_NODES],
     /// Weighted slip of the step.
     pub slip: [[f64; 3]; MOST_NODES],
+    /// Weighted tangential opening of a bond.
+    pub sliding: [[f64; 3]; MOST_NODES],
     /// Area times trial traction, where a formulation carries tractions from state to state.
     pub trial: [[f64; 3]; MOST_NODES],
     /// Area times traction that the body lacks, where integration points decide on friction.

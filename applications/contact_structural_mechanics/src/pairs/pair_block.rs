@@ -7,6 +7,7 @@ use std::sync::Arc;
 use zelus_core::entities::{EntityBlock, EntityError, LocalSystems, LocalUnknown, Request, StepView, Tangent};
 use zelus_core::geometry::Nodal;
 use zelus_core::model::EntityKind;
+use zelus_core::vector3::{add, scale};
 
 use super::contact_block::{ContactBlock, IntegrationState};
 use super::kinematics::PairHistory;
@@ -177,8 +178,9 @@ impl ContactBlock for PairBlock {
                 history: &self.history(at, view),
                 points: OnceCell::new(),
             };
-            system.slip_and_trial(operators, &mut |j, slip, trial| {
-                out.slip[j] = slip;
+            system.inputs_and_trial(operators, &mut |j, inputs, trial| {
+                out.slip[j] = inputs.slip;
+                out.sliding[j] = add(inputs.slip, scale(inputs.sliding, inputs.area));
                 out.trial[j] = trial.unwrap_or(out.trial[j]);
             });
         })

@@ -228,7 +228,7 @@ impl PairsOfShapes {
         let k = self.parameters.scale_factor;
         let slaves = self.slaves(at);
         self.slave.nodal(|j| {
-            let node = &states[slaves[j]];
+            let (node, bond) = (&states[slaves[j]], states.bond(slaves[j]));
             let area = positive(node.kinematics.area);
             // On a part of a facet of second order the share of a corner may be below zero; over all pairs they add up to the area.
             let share = if node.kinematics.area > 0.0 { own[j] } else { positive(own[j]) };
@@ -250,7 +250,9 @@ impl PairsOfShapes {
                 rotation: node.law.rotation,
                 constraints: node.law.constraints,
                 constraint_weight: k * k * area / stiffness,
-                history_traction: node.last.history_traction,
+                history_traction: bond.map_or(node.last.history_traction, |bond| bond.last.friction),
+                history_sliding: bond.map_or([0.0; 3], |bond| bond.last.sliding),
+                bond: bond.and_then(|bond| bond.tangent),
                 traction: add(
                     node.law.history_traction,
                     scale(node.kinematics.normal, node.parameters.penalty * (node.kinematics.weighted_gap / area)),

@@ -41,6 +41,8 @@ fn nodes(pair: &PairGeometry<f64>, noise: &mut Noise, states: [NodeState; 3]) ->
         constraints: Default::default(),
         constraint_weight: 1.0,
         history_traction: std::array::from_fn(|c| if c < dim { 0.1 * noise.next() } else { 0.0 }),
+        history_sliding: [0.0; 3],
+        bond: None,
         traction: [0.0; 3],
     })
 }
@@ -237,6 +239,8 @@ fn check_references(law: &dyn ContactLaw, start: &[f64], lines: &[Vec<f64>], his
             constraints: Default::default(),
             constraint_weight: 1.0,
             history_traction: [0.0; 3],
+            history_sliding: [0.0; 3],
+            bond: None,
             traction: [0.0; 3],
         });
         let expected = &line[36..];
@@ -345,6 +349,8 @@ fn sign_of_the_contact_force() {
         constraints: Default::default(),
         constraint_weight: 1.0,
         history_traction: [0.0; 3],
+        history_sliding: [0.0; 3],
+        bond: None,
         traction: [0.0, 0.0, 50.0 * -0.01],
     };
     // Each slave node: D = 1/4, g = −0.01, force = 50 · 0.01 · 1/4 against the normal; of weighted gaps a quarter of it.
@@ -458,6 +464,8 @@ fn penalty_friction_acts_through_the_mortar_operators() {
                 constraints: Default::default(),
                 constraint_weight: 1.0,
                 history_traction: [0.01, 0.0, 0.0],
+                history_sliding: [0.0; 3],
+                bond: None,
                 traction: [0.0; 3],
             };
             // The slave has come along x by 0.02 since.

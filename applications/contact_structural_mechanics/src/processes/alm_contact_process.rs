@@ -10,6 +10,7 @@ use zelus_core::parameters::{Interval, Settings};
 use zelus_core::processes::{Process, ProcessEntry, ProcessRequest};
 use zelus_core::register;
 use zelus_core::registry::named;
+use zelus_core::vector3::norm;
 use zelus_core::{Error, Result};
 
 use super::friction_settings::{check_sliding, friction_law};
@@ -22,11 +23,15 @@ use crate::compatibility::{FormulationUse, Refusal, refusal};
 use crate::friction::FrictionSettings;
 use crate::interaction::ContactInteraction;
 use crate::interface::{GivenParameters, NodalNormals, check_parts};
-use crate::law::{Augmentation, Margin, Nitsche, NitscheVariant, NormalVariation, OverclosureLaw, OverclosureLawEntry};
+use crate::law::{
+    Augmentation, CohesiveLaw, CohesiveLawEntry, Margin, Nitsche, NitscheVariant, NormalVariation, OverclosureLaw,
+    OverclosureLawEntry, Rubbing,
+};
+use crate::laws::bonded::BONDED;
 use crate::mortar::OperatorThreshold;
 use crate::pairs::{Formulation, Multiplier, find_formulation};
 use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
-use crate::settings::ContactSettings;
+use crate::settings::{ContactSettings, SurfaceSettings};
 use crate::solver::ContactSolverSettings;
 
 #[derive(Debug, Deserialize)]
@@ -78,6 +83,17 @@ struct ContactKeys {
     contact_type: String,
     normal_variation: NormalVariation,
     nodal_normals: NodalNormals,
+    /// Only the process of the penalty method has it.
+    #[serde(default)]
+    cohesive_pairs: Vec<String>,
+    /// Only the process of the penalty method has it.
+    #[serde(default)]
+    friction_direction: Vec<f64>,
+    /// Only the process of the penalty method has it.
+    friction_ratio: Option<f64>,
+    /// Only the process of the penalty method has it.
+    #[serde(default)]
+    elastic_slip: f64,
     /// Processes whose formulations have their forces from penalties lack it.
     augmentation: Option<Augmentation>,
     /// Only the process of Nitsche's method has it.
@@ -180,7 +196,7 @@ fn interaction(
     problems.finish()?;
     let solver = ContactSolverSettings::of(&part.info);
     let named = named.expect("it is known");
-    let part_is_explicit = part.info.solver.explicit;
+    let (part_is_explicit, dimension) = (part.info.solver.explicit, part.info.domain_size);
     let formulation = match named.by_node {
         Some(by_node) if !whole.parameters.penalty_of_weighted_gaps => {
             if part_is_explicit {
@@ -191,6 +207,8 @@ fn interaction(
         }
         _ => named,
     };
+    let surface = surface(settings, &whole, (formulation, dimension))?;
+    let formulation = if surface.is_some() { &BONDED } else { formulation };
     let keys: Option<FrictionKeys> =
         settings.node().get("frictional_law").is_some().then(|| settings.parse()).transpose()?;
     let friction = match &keys {
@@ -224,6 +242,12 @@ fn interaction(
         warn_of_penalties(&whole.parameters, request);
     }
     let tangent_factor = keys.as_ref().map_or(1.0, |keys| keys.tangent_factor);
+    // Bonds that carry shear give it the stiffness of friction, too.
+    let stiffness = surface.as_ref().and_then(|own| own.cohesive.as_ref()).map(|law| law.stiffness());
+    let tangent_factor = match stiffness {
+        Some([normal, shear]) if shear > 0.0 => shear / normal,
+        _ => tangent_factor,
+    };
     // 0 stands for the default of the variant.
     let factor = whole.nitsche_factor.filter(|factor| *factor > 0.0);
     let rule = whole.parameters.adaptation_rule.unwrap_or_else(PenaltyRule::usual);
@@ -250,7 +274,10 @@ fn interaction(
         adapt_search: whole.search_parameters.adapt_search,
         database_step_update: whole.search_parameters.database_step_update.max(1),
         given: GivenParameters {
-            penalty: whole.parameters.manual.then_some(whole.parameters.penalty),
+            penalty: match stiffness {
+                Some([normal, _]) => Some(normal),
+                None => whole.parameters.manual.then_some(whole.parameters.penalty),
+            },
             scale_factor: whole.parameters.manual.then_some(whole.parameters.scale_factor),
         },
         estimate: [whole.parameters.stiffness_factor, whole.parameters.penalty_scale_factor],
@@ -270,6 +297,7 @@ fn interaction(
         operator_threshold: keys.as_ref().map_or_else(OperatorThreshold::default, FrictionKeys::threshold),
         friction,
         overclosure: overclosure(settings, formulation)?,
+        surface,
         adaptation: AdaptationSettings {
             rule: whole.parameters.adapt_penalty.then_some(rule),
             min_gap_factor: whole.parameters.min_gap_factor.unwrap_or(0.0),
@@ -306,6 +334,71 @@ fn overclosure(settings: &Settings, formulation: &Formulation) -> Result<Option<
         return Err(settings.error(key, "soft-contact", fact).remedy(remedy).into());
     }
     Ok(Some(Arc::from((entry.build)(&own)?)))
+}
+
+/// Laws of bonds and of friction by direction, of the settings.
+///
+/// # Errors
+/// Such laws where tractions of nodes have no multiplier by component, beside other laws of the gap, or of pairs that are not there.
+fn surface(
+    settings: &Settings,
+    keys: &ContactKeys,
+    (formulation, dimension): (&Formulation, usize),
+) -> Result<Option<SurfaceSettings>> {
+    let refuse = |key: &str, fact: &str, remedy: &str| -> Result<Option<SurfaceSettings>> {
+        Err(settings.error(key, "surface-law", fact.to_owned()).remedy(remedy).into())
+    };
+    let law = settings.node().get("cohesive").filter(|node| node.get("law").is_some());
+    let pairs = &keys.cohesive_pairs;
+    if law.is_none() && !pairs.is_empty() {
+        let fact = "\"cohesive_pairs\" names pairs, and there is no law of their bonds";
+        return refuse("cohesive_pairs", fact, "give \"cohesive\": {\"law\": \"bilinear\", …}");
+    }
+    let directed = !keys.friction_direction.is_empty();
+    let key = match (law.is_some(), directed, keys.elastic_slip > 0.0) {
+        (true, _, _) => "cohesive",
+        (_, true, _) => "friction_direction",
+        (_, _, true) => "elastic_slip",
+        _ => return Ok(None),
+    };
+    if !formulation.regularised || !formulation.frictional() {
+        let fact =
+            format!("\"{key}\" needs \"contact_type\": \"Frictional\", steps with equilibrium and penalties by node");
+        let remedy = "choose \"Frictional\" (with the coefficient 0 there is no friction), no explicit analysis, and set \
+                      \"penalty_of_weighted_gaps\" to false";
+        return refuse(key, &fact, remedy);
+    }
+    if settings.node().get("pressure_overclosure").is_some_and(|node| node.get("law").is_some()) {
+        let fact = format!("\"{key}\" and \"pressure_overclosure\" both give the tractions of contact");
+        return refuse(key, &fact, "take one of the two out");
+    }
+    let mut rubbing = Rubbing::default();
+    if keys.elastic_slip > 0.0 {
+        rubbing.elastic_slip = Some(keys.elastic_slip);
+    }
+    if directed {
+        let size = norm(<[f64; 3]>::try_from(keys.friction_direction.as_slice()).unwrap_or_default());
+        if dimension != 3 || size <= 0.0 {
+            let fact = "\"friction_direction\" must be a vector of three numbers, in a model in space";
+            return refuse("friction_direction", fact, "write e.g. [1.0, 0.0, 0.0], or take it out in the plane");
+        }
+        rubbing.direction = std::array::from_fn(|c| keys.friction_direction[c] / size);
+        rubbing.ratio = keys.friction_ratio.unwrap_or(1.0);
+    }
+    let Some(node) = law else { return Ok(Some(SurfaceSettings { cohesive: None, pairs: Vec::new(), rubbing })) };
+    if keys.parameters.adapt_penalty || keys.parameters.manual {
+        let fact =
+            "\"cohesive\" gives the stiffness of contact, and \"advance_ALM_parameters\" gives or adapts a penalty";
+        return refuse(key, fact, "take \"adapt_penalty\", \"manual_ALM\" and \"penalty\" out");
+    }
+    if let Some(missing) = pairs.iter().find(|key| !keys.contact_model_part.contains_key(*key)) {
+        let fact = format!("\"cohesive_pairs\" names the pair {missing:?}, which \"contact_model_part\" does not have");
+        let known: Vec<&str> = keys.contact_model_part.keys().map(String::as_str).collect();
+        return refuse("cohesive_pairs", &fact, &format!("pairs: {}", known.join(", ")));
+    }
+    let (entry, own) = named::<CohesiveLawEntry>(node, "law")?;
+    let cohesive: Arc<dyn CohesiveLaw> = Arc::from((entry.build)(&own)?);
+    Ok(Some(SurfaceSettings { cohesive: Some(cohesive), pairs: pairs.clone(), rubbing }))
 }
 
 /// Pairs that do not separate are pairs of the process.

@@ -6,7 +6,7 @@ use zelus_core::model::flags::ACTIVE;
 use zelus_core::model::{ColumnType, Fields, InterfaceSurface, ModelPart, Variable};
 use zelus_structural_mechanics::variables::NORMAL;
 
-use super::nodal_results::{pressure, slip, status, traction};
+use super::nodal_results::{damage, pressure, slip, status, traction};
 use super::pair_states::{PartsOfPairs, name};
 use crate::flags::SLIP;
 use crate::interface::{Interface, Patches, SlaveIndex};
@@ -14,8 +14,9 @@ use crate::law::Multiplier;
 use crate::pairs::Formulation;
 use crate::slave_nodes::{SlaveState, SlaveStates};
 use crate::variables::{
-    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, CONTACT_GAP, CONTACT_PRESSURE, CONTACT_SLIP,
-    CONTACT_STATUS, CONTACT_TRACTION, NODAL_AREA, NORMAL_GAP, TANGENT_XI, WEIGHTED_GAP, WEIGHTED_SLIP,
+    AUGMENTED_NORMAL_CONTACT_PRESSURE, AUGMENTED_TANGENT_CONTACT_PRESSURE, COHESIVE_DAMAGE, CONTACT_GAP,
+    CONTACT_PRESSURE, CONTACT_SLIP, CONTACT_STATUS, CONTACT_TRACTION, NODAL_AREA, NORMAL_GAP, TANGENT_XI, WEIGHTED_GAP,
+    WEIGHTED_SLIP,
 };
 
 /// The surfaces of the interfaces of an interaction in the data of a model part.
@@ -103,6 +104,9 @@ impl InterfaceSurfaces {
                 vectors(values, &CONTACT_SLIP, own(), slip);
                 vectors(values, &TANGENT_XI, own(), |state| state.law.tangent);
                 vectors(values, &AUGMENTED_TANGENT_CONTACT_PRESSURE, own(), |state| state.law.traction);
+            }
+            if states.shows_damage() {
+                put(values, &COHESIVE_DAMAGE, points.iter().map(|&slave| [damage(states, slave)]));
             }
             let multiplier = formulation.multiplier;
             put_multiplier(values, multiplier, points.iter().map(|&p| multiplier.value(slave_nodes, states.owner(p))));

@@ -7,10 +7,13 @@ use zelus_core::model::{ModelPart, Nodes};
 use zelus_core::vector3::{add, scale};
 use zelus_structural_mechanics::variables::DISPLACEMENT;
 
+use crate::interface::SlaveIndex;
 use crate::law::NodeState;
 use crate::pairs::{ContactBlock, IntegrationState};
 use crate::slave_nodes::{NodalCombination, SlaveState, SlaveStates};
-use crate::variables::{CONTACT_FORCE, CONTACT_GAP, CONTACT_PRESSURE, CONTACT_SLIP, CONTACT_STATUS, CONTACT_TRACTION};
+use crate::variables::{
+    COHESIVE_DAMAGE, CONTACT_FORCE, CONTACT_GAP, CONTACT_PRESSURE, CONTACT_SLIP, CONTACT_STATUS, CONTACT_TRACTION,
+};
 
 /// Writes pressures, tractions, gaps, slips and states of slave nodes.
 pub(crate) fn write_states(nodes: &mut Nodes, states: &SlaveStates, frictional: bool) {
@@ -21,6 +24,13 @@ pub(crate) fn write_states(nodes: &mut Nodes, states: &SlaveStates, frictional: 
     values.values_mut(&CONTACT_TRACTION, 0).fill(0.0);
     if frictional {
         values.values_mut(&CONTACT_SLIP, 0).fill(0.0);
+    }
+    if states.shows_damage() {
+        values.values_mut(&COHESIVE_DAMAGE, 0).fill(0.0);
+        for node in states.mesh_nodes() {
+            let damages = states.at(node).map(|slave| ([damage(states, slave)], states[slave].kinematics.area));
+            values.values_mut(&COHESIVE_DAMAGE, 0)[node as usize] = combined(NodalCombination::Mean, damages)[0];
+        }
     }
     // Of several slave nodes at a node: the state that is in contact most, the least gap, and pressures by area.
     for node in states.mesh_nodes() {
@@ -74,6 +84,11 @@ pub(super) fn slip(state: &SlaveState) -> [f64; 3] {
         true => scale(state.kinematics.weighted_slip, state.kinematics.area.recip()),
         false => [0.0; 3],
     }
+}
+
+/// COHESIVE_DAMAGE of a slave node.
+pub(super) fn damage(states: &SlaveStates, slave: SlaveIndex) -> f64 {
+    states.bond(slave).map_or(0.0, |bond| bond.state.damage)
 }
 
 /// The numbers of the only slave node at a mesh node, or the combination of several.

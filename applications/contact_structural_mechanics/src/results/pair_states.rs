@@ -14,8 +14,8 @@ use crate::slave_nodes::{SlaveState, SlaveStates};
 /// Parts of the pairs of a deck by key: all of them, and those on the slave side.
 pub(crate) type PartsOfPairs<'a> = (&'a BTreeMap<String, Vec<String>>, &'a BTreeMap<String, Vec<String>>);
 
-/// The pairs of these interfaces; nodes in contact slide where there is no friction, and `heat` is the dissipation of a sliding slave
-/// node in the step (energy); `slaves` are the slave nodes of each interface. No depth up to `least` counts. A slave node of several
+/// The pairs of these interfaces; nodes in contact slide where there is no friction, and `heat` is the dissipation of a slave node in the
+/// step (energy); `slaves` are the slave nodes of each interface. No depth up to `least` counts. A slave node of several
 /// pairs counts in the first.
 pub(crate) fn pair_states(
     interfaces: &[Interface],
@@ -35,7 +35,7 @@ pub(crate) fn pair_states(
                 NodeState::Stick if frictional => out.sticking += 1,
                 NodeState::Stick | NodeState::Slip => out.slipping += 1,
             }
-            if frictional && state.contact() == NodeState::Slip {
+            if frictional {
                 out.dissipated += heat(slave, state);
             }
             let depth = -state.gap().unwrap_or(0.0);

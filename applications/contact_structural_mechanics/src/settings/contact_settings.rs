@@ -8,11 +8,34 @@ use zelus_core::parameters::Interval;
 use crate::adaptation::{AdaptationSettings, ExplicitPenalty, UzawaSettings};
 use crate::friction::FrictionSettings;
 use crate::interface::{GivenParameters, NodalNormals};
-use crate::law::{Augmentation, Nitsche, NormalVariation, OverclosureLaw};
+use crate::law::{Augmentation, CohesiveLaw, Nitsche, NormalVariation, OverclosureLaw, Rubbing, SurfaceLaw};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::Formulation;
 use crate::search::SearchSettings;
 use crate::solver::ContactSolverSettings;
+
+/// Laws of a deck that give the tractions of slave nodes by their gap and slip: bonds, friction by direction and elastic slip.
+#[derive(Clone)]
+pub struct SurfaceSettings {
+    /// The law of bonds.
+    pub cohesive: Option<Arc<dyn CohesiveLaw>>,
+    /// Keys of interfaces with bonds; none means all.
+    pub pairs: Vec<String>,
+    /// Friction.
+    pub rubbing: Rubbing,
+}
+
+impl SurfaceSettings {
+    /// Whether an interface has bonds, by its key.
+    pub fn bonds(&self, key: &str) -> bool {
+        self.cohesive.is_some() && (self.pairs.is_empty() || self.pairs.iter().any(|own| own == key))
+    }
+
+    /// Laws that bonds share.
+    pub fn law(&self) -> SurfaceLaw<'_> {
+        SurfaceLaw { cohesive: self.cohesive.as_deref(), rubbing: self.rubbing }
+    }
+}
 
 /// Settings of contact.
 #[derive(Clone)]
@@ -67,6 +90,8 @@ pub struct ContactSettings {
     pub friction: FrictionSettings,
     /// The law of soft contact, in place of the penalty.
     pub overclosure: Option<Arc<dyn OverclosureLaw>>,
+    /// Laws of bonds and of friction by direction, in place of penalties.
+    pub surface: Option<SurfaceSettings>,
     /// Parameters that are adapted in every iteration.
     pub adaptation: AdaptationSettings,
     /// Whether normals lie in planes of symmetry, and multipliers that supports leave without equation are dropped.

@@ -4,5 +4,5 @@ mod calibration;
 mod contact_settings;
 mod setup;
 
-pub use contact_settings::ContactSettings;
+pub use contact_settings::{ContactSettings, SurfaceSettings};
 pub(crate) use setup::Setup;

@@ -12,6 +12,7 @@ use crate::interface::Interface;
 use crate::law::{Augmentation, NormalVariation, SlipRule, StepParameters};
 use crate::mortar::SegmentationSettings;
 use crate::pairs::Multiplier;
+use crate::slave_nodes::SlaveStates;
 use crate::tolerances::Tolerances;
 use crate::variables::NODAL_H;
 
@@ -105,8 +106,16 @@ impl Setup {
         let bounded = matches!(self.parameters.slip_rule, SlipRule::Bounded(_));
         bounded
             && self.settings.explicit.is_none()
+            && self.settings.surface.is_none()
             && self.settings.augmentation == Augmentation::Node
             && matches!(self.settings.formulation.multiplier, Multiplier::Vector(_))
+    }
+
+    /// Finds the tractions of bonds in the present state.
+    pub(crate) fn find_bonds(&self, states: &mut SlaveStates) {
+        if let Some(surface) = &self.settings.surface {
+            states.find_bonds(surface.law(), self.parameters.tangent_factor);
+        }
     }
 
     /// Distance within which nodes start in contact, and depth beyond which facets are in each other (length).

@@ -18,6 +18,7 @@ use zelus_core::vector3::{cross, norm};
 use zelus_structural_mechanics::variables::NORMAL;
 
 use super::following_multipliers;
+use super::slave_bond::SlaveBond;
 use super::slave_state::{Accepted, SlaveKinematics, SlaveLawState, SlaveParameters, SlaveState};
 use crate::interface::{NormalPatches, Patches, SlaveIndex};
 use crate::law::{FrictionLaw, Multiplier, NodeState, Sliding};
@@ -90,6 +91,15 @@ pub struct SlaveStates {
     table: Arc<SlaveTable>,
     slaves: Arc<[SlaveIndex]>,
     states: Vec<SlaveState>,
+    /// Bonds of all slave nodes; empty where no bond gives the tractions.
+    #[serde(default)]
+    bonds: Vec<SlaveBond>,
+    /// Whether they may hold, and their damage is a result.
+    #[serde(default)]
+    shows_damage: bool,
+    /// Iterations of the step in which bonds were found.
+    #[serde(skip)]
+    iterations: usize,
     #[serde(skip)]
     columns: SlaveColumns,
 }
@@ -118,7 +128,7 @@ impl SlaveStates {
     pub fn of(part: &ModelPart, table: SlaveTable, columns: SlaveColumns) -> Self {
         let states = table.nodes.iter().map(|&node| imported(&part.nodes, node as usize, columns)).collect();
         let slaves = (0..table.nodes.len() as u32).map(SlaveIndex).collect();
-        Self { slaves, table: Arc::new(table), states, columns }
+        Self { slaves, table: Arc::new(table), states, bonds: Vec::new(), shows_damage: false, iterations: 0, columns }
     }
 
     /// Number of slave nodes, whether they are on slave facets or not.
@@ -189,10 +199,11 @@ impl SlaveStates {
     pub fn resume(&mut self, saved: Self) -> Result<()> {
         let ascend = saved.slaves.windows(2).all(|pair| pair[0] < pair[1]);
         let known = saved.slaves.last().is_none_or(|last| last.place() < self.states.len());
-        if saved.states.len() != self.states.len() || !ascend || !known {
+        let unlike = saved.states.len() != self.states.len() || saved.bonds.len() != self.bonds.len();
+        if unlike || !ascend || !known {
             return Err(unfit("the states of contact that it remembers are of other slave nodes"));
         }
-        (self.slaves, self.states) = (saved.slaves, saved.states);
+        (self.slaves, self.states, self.bonds) = (saved.slaves, saved.states, saved.bonds);
         Ok(())
     }
 
@@ -244,6 +255,66 @@ impl SlaveStates {
                 Accepted { weighted_gap: state.kinematics.weighted_gap, history_traction: state.law.history_traction };
             state.law.joined = state.law.active;
         }
+        self.bonds.iter_mut().for_each(|bond| bond.last = bond.state);
+    }
+
+    /// Gives every slave node a bond, on which the first contact decides; whether there is a law by which bonds hold.
+    pub fn add_bonds(&mut self, shows_damage: bool) {
+        self.shows_damage = shows_damage;
+        self.bonds = vec![SlaveBond::default(); self.states.len()];
+    }
+
+    /// Begins to count the iterations of a step.
+    pub(super) fn restart_iterations(&mut self) {
+        self.iterations = 0;
+    }
+
+    /// Counts an iteration of the step.
+    pub fn count_iteration(&mut self) {
+        self.iterations += 1;
+    }
+
+    /// Number of the iteration.
+    pub(super) fn iteration(&self) -> usize {
+        self.iterations
+    }
+
+    /// Whether the damage of bonds is a result.
+    pub fn shows_damage(&self) -> bool {
+        self.shows_damage
+    }
+
+    /// Whether bonds give the tractions of slave nodes.
+    pub fn has_bonds(&self) -> bool {
+        !self.bonds.is_empty()
+    }
+
+    /// The bond of a slave node, where bonds give the tractions.
+    pub fn bond(&self, slave: SlaveIndex) -> Option<&SlaveBond> {
+        self.bonds.get(slave.place())
+    }
+
+    /// The bond of a slave node, to change.
+    pub(super) fn bond_mut(&mut self, slave: SlaveIndex) -> &mut SlaveBond {
+        &mut self.bonds[slave.place()]
+    }
+
+    /// Sets the accepted state of a bond.
+    #[cfg(test)]
+    pub(crate) fn set_accepted(&mut self, slave: SlaveIndex, state: crate::law::BondState) {
+        self.bond_mut(slave).last = state;
+    }
+
+    /// Takes the tangential openings of bonds (length) from integrals over pairs.
+    pub fn open_bonds(&mut self, sliding: &dyn Fn(SlaveIndex) -> [f64; 3]) {
+        for (place, bond) in self.bonds.iter_mut().enumerate() {
+            bond.sliding = sliding(SlaveIndex(place as u32));
+        }
+    }
+
+    /// Whether a slave node has a bond that has not failed.
+    pub fn holds(&self, slave: SlaveIndex) -> bool {
+        self.bond(slave).is_some_and(|bond| bond.state.holds())
     }
 
     /// Takes the normals from the model.
