@@ -12,6 +12,7 @@ register_variable! {
     pub FORCE_RESIDUAL: [f64; 3] = "External minus internal forces that explicit integration accelerates (force).";
     pub POINT_LOAD: [f64; 3] = "Force on a point (force).";
     pub ROTATION: [f64; 3] = "Rotation vector of the reference node of a coupling (radian); other nodes have none.";
+    pub WHOLE_TURNS: [f64; 3] = "Whole turns that ROTATION counts: the rest of it states the rotation (radian).";
     pub ANGULAR_VELOCITY: [f64; 3] = "Rate of ROTATION (radian per time).";
     pub ANGULAR_ACCELERATION: [f64; 3] = "Second rate of ROTATION (radian per time squared).";
     pub REACTION_MOMENT: [f64; 3] = "Moment of the supports on a reference node, of couplings where it is free (force times length).";

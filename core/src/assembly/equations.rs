@@ -197,7 +197,12 @@ impl Equations {
             multiplier: parallel::map(free.len(), ROWS, |at| dofs.dofs()[free[at] as usize].multiplier),
             ..Layout::default()
         };
-        let symmetric = slaves.values().all(|constraint| constraint.forces.is_none());
+        let is_symmetric = |role: &DofRole| match role {
+            DofRole::Slave(terms) => terms.iter().all(|term| term.weight == term.force),
+            _ => true,
+        };
+        // Terms of prescribed unknowns are reactions alone.
+        let symmetric = roles.iter().all(is_symmetric);
         Ok(Self { has_slaves: !slaves.is_empty(), symmetric, roles, free, leaning, supported_slaves, ground, layout })
     }
 

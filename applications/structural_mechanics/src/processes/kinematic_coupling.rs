@@ -1,19 +1,23 @@
 //! Nodes that move with a reference node R as a rigid body.
 //!
 //! u_i = u_R + (exp [θ]× − I) r_i with r_i = x_i − x_R in the initial geometry; for small rotations u_i = u_R + θ × r_i. The
-//! constraint of a component is linearised at the present θ: its weights are the derivatives, its constant makes it exact there.
+//! constraint of a component is linearised at the present θ: its weights are the derivatives by θ, its constant makes it exact there.
+//! Forces f_i give the reference node the moment Σ R r_i × f_i about the axes of the space, which is that of δω and not of δθ.
 
 use std::ops::Range;
 
 use zelus_core::diagnostics::Result;
-use zelus_core::entities::{ActiveSet, Interaction, Join, SetChange};
 use zelus_core::model::{MasterSlaveConstraint, ModelPart, Variable};
 use zelus_core::vector3::{add, cross, sub};
 
+use super::constraints_of_process::passing_on;
+use super::large_rotation::{RotatingCoupling, rotation_of, vector_at};
 use super::reference_node::components;
+use super::rotation_stiffness::{Matrix, RotationTangent, add_scaled, of_arm};
 use super::rotation_vector::{rotated, spin};
 use crate::variables::{
-    ACCELERATION, ANGULAR_ACCELERATION, ANGULAR_VELOCITY, DISPLACEMENT, ROTATION, VELOCITY, VOLUME_ACCELERATION,
+    ACCELERATION, ANGULAR_ACCELERATION, ANGULAR_VELOCITY, DISPLACEMENT, REACTION, ROTATION, VELOCITY,
+    VOLUME_ACCELERATION, WHOLE_TURNS,
 };
 
 /// Time level of the start of a step.
@@ -35,26 +39,25 @@ pub(super) struct KinematicCoupling {
 }
 
 impl KinematicCoupling {
-    /// The constraints at a rotation, node by node.
-    pub fn constraints(&self, space: usize, theta: [f64; 3]) -> Vec<MasterSlaveConstraint> {
+    /// The constraints at a rotation θ − β, with the whole turns β that ROTATION counts beside it, node by node.
+    pub fn constraints(&self, space: usize, theta: [f64; 3], turns: [f64; 3]) -> Vec<MasterSlaveConstraint> {
         let [translations, rotations] = components(space);
+        let counted = add(theta, turns);
         let unit = |k: u8| std::array::from_fn(|c| f64::from(u8::from(c == usize::from(k))));
         let of_node = |(&(node, arm), coupled): (&(u32, [f64; 3]), &[u8])| {
             let now = rotated(theta, arm);
-            let slopes: Vec<[f64; 3]> = rotations.iter().map(|&k| cross(spin(theta, unit(k)), now)).collect();
+            let slopes: Vec<[[f64; 3]; 2]> =
+                rotations.iter().map(|&k| [spin(theta, unit(k)), unit(k)].map(|axis| cross(axis, now))).collect();
             let of_component = move |&c: &u8| {
                 let at = usize::from(c);
-                let by_rotation = rotations.iter().zip(&slopes).map(|(&k, slope)| (k, slope[at]));
-                let linear: f64 = by_rotation.clone().map(|(k, slope)| slope * theta[usize::from(k)]).sum();
-                let masters = by_rotation.filter(|(_, slope)| *slope != 0.0);
-                let masters = masters.map(|(k, slope)| ((self.reference, ROTATION.component(k)), slope));
-                let translation = ((self.reference, DISPLACEMENT.component(c)), 1.0);
-                let masters = std::iter::once(translation).chain(masters).collect();
+                let by_rotation = rotations.iter().zip(&slopes).map(|(&k, slopes)| (k, slopes.map(|slope| slope[at])));
+                let linear: f64 = by_rotation.clone().map(|(k, [slope, _])| slope * counted[usize::from(k)]).sum();
+                let terms = by_rotation.filter(|(_, slopes)| *slopes != [0.0; 2]);
+                let terms = terms.map(|(k, slopes)| ((self.reference, ROTATION.component(k)), slopes));
+                let translation = ((self.reference, DISPLACEMENT.component(c)), [1.0; 2]);
+                let terms = std::iter::once(translation).chain(terms).collect();
                 let constant = sub(now, arm)[at] - linear;
-                MasterSlaveConstraint {
-                    constant,
-                    ..MasterSlaveConstraint::new((node, DISPLACEMENT.component(c)), masters)
-                }
+                passing_on((node, DISPLACEMENT.component(c)), terms, constant)
             };
             coupled.iter().map(of_component).collect::<Vec<_>>()
         };
@@ -97,65 +100,38 @@ impl KinematicCoupling {
         }
     }
 
-    /// Takes the constraints at the present rotation.
-    fn renew(&self, part: &mut ModelPart) {
-        let field = part.nodes.history.get(ROTATION.name());
-        let theta = field.map_or([0.0; 3], |field| field.vector(0, self.reference as usize));
-        let new = self.constraints(part.info.domain_size, theta);
+    /// Takes the constraints at a rotation θ − β, with the whole turns β.
+    pub fn renew(&self, part: &mut ModelPart, theta: [f64; 3], turns: [f64; 3]) {
+        let new = self.constraints(part.info.domain_size, theta, turns);
         for (own, new) in part.constraints[self.made.clone()].iter_mut().zip(new) {
-            (own.masters, own.constant) = (new.masters, new.constant);
+            (own.masters, own.forces, own.constant) = (new.masters, new.forces, new.constant);
         }
     }
 }
 
-/// A coupling whose constraints follow large rotations.
-pub(super) struct LargeRotation {
-    pub coupling: KinematicCoupling,
-    version: u64,
-}
-
-impl LargeRotation {
-    /// The coupling at rest.
-    pub fn new(coupling: KinematicCoupling) -> Self {
-        Self { coupling, version: 0 }
+impl RotatingCoupling for KinematicCoupling {
+    fn reference(&self) -> u32 {
+        self.reference
     }
 
-    fn renew(&mut self, part: &mut ModelPart) {
-        self.coupling.renew(part);
-        self.version += 1;
-    }
-}
-
-impl Interaction for LargeRotation {
-    fn name(&self) -> &str {
-        "kinematic coupling"
-    }
-
-    fn drives(&self) -> bool {
-        false
-    }
-
-    fn begin_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        self.renew(part);
+    fn follow(&mut self, part: &mut ModelPart, _begins: bool) -> Result<()> {
+        let theta = rotation_of(part, self.reference);
+        let turns = vector_at(part, &WHOLE_TURNS, self.reference);
+        self.renew(part, theta, turns);
         Ok(())
     }
 
-    fn constraints_version(&self) -> u64 {
-        self.version
-    }
-
-    fn joins(&self, _part: &ModelPart) -> Option<Vec<Join>> {
-        Some(Vec::new())
-    }
-
-    fn active_set(&mut self) -> Option<&mut dyn ActiveSet> {
-        Some(self)
-    }
-}
-
-impl ActiveSet for LargeRotation {
-    fn after_update(&mut self, part: &mut ModelPart, _iteration: usize) -> Result<SetChange> {
-        self.renew(part);
-        Ok(SetChange::default())
+    fn tangent(&self, part: &ModelPart) -> Option<RotationTangent> {
+        let theta = rotation_of(part, self.reference);
+        let [translations, rotations] = components(part.info.domain_size);
+        let nodes = self.arms.iter().map(|arm| (arm, &*self.coupled));
+        let nodes = nodes.chain(self.masses.iter().map(|arm| (arm, translations)));
+        let l = nodes.fold(Matrix::default(), |sum, (&(node, arm), coupled)| {
+            let reaction = vector_at(part, &REACTION, node);
+            let force = std::array::from_fn(|c| if coupled.contains(&(c as u8)) { -reaction[c] } else { 0.0 });
+            add_scaled(sum, of_arm(rotated(theta, arm), force), 1.0)
+        });
+        let unit = |k: u8| std::array::from_fn(|c| f64::from(u8::from(c == usize::from(k))));
+        Some(RotationTangent { l, ways: rotations.iter().map(|&k| [unit(k), spin(theta, unit(k))]).collect() })
     }
 }

@@ -10,7 +10,8 @@ use zelus_core::register;
 use zelus_core::vector3::sub;
 
 use super::constraints_of_process::{couple, uncouple};
-use super::kinematic_coupling::{KinematicCoupling, LargeRotation};
+use super::kinematic_coupling::KinematicCoupling;
+use super::large_rotation::LargeRotation;
 use super::reference_node::{self, PART, ReferenceNode, refuse_revolution, required};
 use super::rigid_body_mass::{self, add_to_mesh, part_of_masses};
 
@@ -44,10 +45,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         let problem = settings.error("components", "invalid-value", "no component is coupled");
         return Err(problem.remedy("write true for one at least, in planar models in the plane").into());
     }
-    let large = match settings.get("large_rotations")? {
-        node if node.is_null() => !is_of_small_displacements(part, &target.selection(&part.tree)?.nodes),
-        node => node.bool()?,
-    };
+    let large = has_large_rotations(&settings, part, &target)?;
     Ok(Box::new(KinematicCouplingProcess::new(&settings, part, target, reference, (coupled, large))?))
 }
 
@@ -68,20 +66,40 @@ impl KinematicCouplingProcess {
         let arm = |node: u32| sub(part.nodes.initial[node as usize], point);
         let arms = nodes.iter().map(|&node| (node, arm(node))).collect();
         let large = large && !part.info.solver.linear;
-        let masses = match rigid_body_mass::masses(settings, part.info.domain_size, point)?.len() {
-            0 => Vec::new(),
-            _ => {
-                let nodes = &part.part(&part_of_masses(settings.get_str(PART)?))?.nodes;
-                nodes.iter().filter(|&&node| node != reference.node).map(|&node| (node, arm(node))).collect()
-            }
-        };
-        let coupling = KinematicCoupling { reference: reference.node, arms, coupled, masses, made: 0..0 };
+        let coupling = KinematicCoupling { arms, coupled, ..masses_at(settings, part, &reference)? };
         Ok(Self { target, reference, coupling, large, is_first_step: false })
     }
 }
 
+/// The coupling of the masses of the body alone.
+///
+/// # Errors
+/// Masses that no body has.
+pub(super) fn masses_at(settings: &Settings, part: &ModelPart, reference: &ReferenceNode) -> Result<KinematicCoupling> {
+    let reference = reference.node;
+    let point = part.nodes.initial[reference as usize];
+    let masses = match rigid_body_mass::masses(settings, part.info.domain_size, point)?.len() {
+        0 => Vec::new(),
+        _ => {
+            let nodes = part.part(&part_of_masses(settings.get_str(PART)?))?.nodes.iter().copied();
+            let arm = |node: u32| sub(part.nodes.initial[node as usize], point);
+            nodes.filter(|&node| node != reference).map(|node| (node, arm(node))).collect()
+        }
+    };
+    Ok(KinematicCoupling { reference, arms: Vec::new(), coupled: Vec::new(), masses, made: 0..0 })
+}
+
+/// Whether the constraints of a part follow large rotations; collective.
+pub(super) fn has_large_rotations(settings: &Settings, part: &ModelPart, target: &Target) -> Result<bool> {
+    let large = match settings.get("large_rotations")? {
+        node if node.is_null() => !is_of_small_displacements(part, &target.selection(&part.tree)?.nodes),
+        node => node.bool()?,
+    };
+    Ok(large && !part.info.solver.linear)
+}
+
 /// Makes the reference node and the masses of the body where they are missing.
-fn prepare(request: &mut ProcessRequest<'_>) -> Result<()> {
+pub(super) fn prepare(request: &mut ProcessRequest<'_>) -> Result<()> {
     reference_node::prepare(request)?;
     // Faults of the settings are told when the process is made.
     let Ok(settings) = request.settings_with(required) else { return Ok(()) };
@@ -110,13 +128,13 @@ fn is_of_small_displacements(part: &ModelPart, nodes: &[u32]) -> bool {
 impl Process for KinematicCouplingProcess {
     fn initialize(&mut self, model: &mut Model) -> Result<()> {
         let part = model.root_mut(&self.target.path)?;
-        let new = self.coupling.constraints(part.info.domain_size, [0.0; 3]);
+        let new = self.coupling.constraints(part.info.domain_size, [0.0; 3], [0.0; 3]);
         self.coupling.made = couple(part, &self.target, new);
         Ok(())
     }
 
     fn interaction(&mut self, _model: &mut Model) -> Result<Option<(String, Box<dyn Interaction>)>> {
-        let made = || Box::new(LargeRotation::new(self.coupling.clone())) as Box<dyn Interaction>;
+        let made = || Box::new(LargeRotation::new(Box::new(self.coupling.clone()))) as Box<dyn Interaction>;
         Ok(self.large.then(|| (self.target.path.clone(), made())))
     }
 

@@ -14,7 +14,7 @@ use zelus_core::vector3::{norm, sub};
 use super::nodal_conditions::add_conditions_to_mesh;
 use crate::variables::{
     ANGULAR_ACCELERATION, ANGULAR_VELOCITY, DISPLACEMENT, POINT_LOAD, POINT_MOMENT, REACTION, REACTION_MOMENT,
-    ROTATION, VELOCITY,
+    ROTATION, VELOCITY, WHOLE_TURNS,
 };
 
 /// Keys of its settings.
@@ -78,7 +78,7 @@ pub(super) fn prepare_at(model: &mut Model, settings: &Settings, point: Option<[
         part.tree.normalise();
     }
     let [node] = part.part(&path)?.nodes[..] else { return Ok(()) };
-    for variable in [&ROTATION, &POINT_LOAD, &POINT_MOMENT, &REACTION_MOMENT] {
+    for variable in [&ROTATION, &WHOLE_TURNS, &POINT_LOAD, &POINT_MOMENT, &REACTION_MOMENT] {
         part.nodes.history.add(variable);
     }
     if part.nodes.history.has(VELOCITY.name()) {
@@ -207,8 +207,7 @@ impl ReferenceNode {
             part.nodes.ids[self.node as usize]
         );
         let problem = Diagnostic::warning("large-rotation", fact).at(self.place.clone());
-        let remedy =
-            "use kinematic_coupling_process with \"large_rotations\": true, and elements of large displacements";
+        let remedy = "set \"large_rotations\": true and use elements of large displacements";
         (size > LARGE).then(|| problem.remedy(remedy))
     }
 }

@@ -3,9 +3,11 @@
 //! The traction is t(x) = F/A + θ × (x − c), with the area A and its centre c, and J θ = M_c. M_c is the moment about the centre and
 //! J = ∫ (r·r) I − r⊗r dA with r = x − c. Node i takes f_i = ∫ N_i t dA = w_i F/A + θ × s_i, with w_i = ∫ N_i dA and s_i = ∫ N_i r dA.
 //! By the same quadrature A = Σ w_i, A c = Σ w_i x_i and J = Σ (x_i·s_i) I − s_i⊗x_i, so that the resultants of the nodal forces are
-//! F and M_c but for round-off. Of all tractions with these resultants t is the least in the mean square.
+//! F and M_c but for round-off. Of all tractions with these resultants t is the least in the mean square. On bodies of revolution dA is
+//! 2πr ds.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 use nalgebra::{Matrix3, Vector3};
 use zelus_core::geometry::{Shape, ShapeTable, mapping};
@@ -36,6 +38,7 @@ impl Resultant {
     /// Of the conditions of a part of the highest dimension; of its nodes, all alike, where it has no conditions.
     pub fn of(part: &ModelPart, selection: &SubPart) -> Self {
         let shape = |at: u32| part.conditions.kinds[at as usize].cell;
+        let of_revolution = is_of_revolution(part);
         let dim = selection.conditions.iter().filter_map(|&at| shape(at)).map(Shape::dim).max();
         let position = |node: u32| part.nodes.initial[node as usize];
         // w_i, and ∫ N_i x dA.
@@ -52,10 +55,11 @@ impl Resultant {
                     let Some(shape) = shape(at).filter(|shape| shape.dim() == dim) else { continue };
                     let nodes = part.conditions.nodes(at);
                     let x: Vec<[f64; 3]> = nodes.iter().map(|&node| position(node)).collect();
-                    let table = ShapeTable::default_of(shape);
+                    let table = ShapeTable::get(shape, shape.cell().default_order + usize::from(of_revolution));
                     for (g, point) in table.points().iter().enumerate() {
                         let weight = point.weight * mapping::det_jacobian(shape, &x, point.xi);
                         let at = mapping::position(shape, &x, point.xi);
+                        let weight = if of_revolution { TAU * at[0] * weight } else { weight };
                         nodes.iter().zip(table.n_at(g)).for_each(|(&node, n)| put(node, n * weight, at));
                     }
                 }
@@ -85,14 +89,25 @@ impl Resultant {
         self.nodes.iter().map(|(node, ..)| *node)
     }
 
+    /// The nodes with w_i/A and s_i.
+    pub fn shares(&self) -> impl ExactSizeIterator<Item = (u32, f64, [f64; 3])> + '_ {
+        self.nodes.iter().map(|&(node, weight, s)| (node, weight / self.area, s))
+    }
+
     /// The mean rotation of the part from the initial to the present positions, by the polar decomposition of ∫ x⊗r dA; `None` in
     /// space where the nodes lie on a line.
     pub fn rotation(&self, part: &ModelPart) -> Option<[[f64; 3]; 3]> {
+        let x: Vec<[f64; 3]> = self.nodes().map(|node| part.nodes.current[node as usize]).collect();
+        self.rotation_to(&x, part.info.domain_size)
+    }
+
+    /// As [`Resultant::rotation`], to these positions of the nodes.
+    pub fn rotation_to(&self, positions: &[[f64; 3]], space: usize) -> Option<[[f64; 3]; 3]> {
         let mut sum = Matrix3::zeros();
-        for &(node, _, s) in &self.nodes {
-            sum += Vector3::from(part.nodes.current[node as usize]) * Vector3::from(s).transpose();
+        for (&(_, _, s), x) in self.nodes.iter().zip(positions) {
+            sum += Vector3::from(*x) * Vector3::from(s).transpose();
         }
-        if part.info.domain_size == 2 {
+        if space == 2 {
             let (sine, cosine) = (sum[(1, 0)] - sum[(0, 1)]).atan2(sum[(0, 0)] + sum[(1, 1)]).sin_cos();
             return Some([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]);
         }
@@ -125,6 +140,11 @@ impl Resultant {
         let share = |&(_, weight, s): &(u32, f64, [f64; 3])| add(scale(force, weight / self.area), cross(rotation, s));
         Some(self.nodes.iter().map(share).collect())
     }
+}
+
+/// Whether the elements are rings of bodies of revolution.
+pub(super) fn is_of_revolution(part: &ModelPart) -> bool {
+    part.elements.kinds.iter().any(|kind| kind.name.contains("Axisym"))
 }
 
 /// Eigenvalues and eigenvectors of a symmetric matrix, by Jacobi's rotations.
