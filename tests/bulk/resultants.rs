@@ -160,6 +160,66 @@ fn forces_on_one_face_add_up() {
     assert!(!warnings.iter().any(|words| words.contains("listed-twice")), "{warnings:?}");
 }
 
+/// ANALYTIC: an axial force on the whole turn is the traction F/A on a ring or a disc, A = π (b² − a²) whatever the facets, so that a rod or
+/// tube without Poisson's ratio has σ = F/A and u = F L/(E A), and the report has the total. Nodes alone take equal shares.
+#[test]
+fn an_axial_force_on_a_body_of_revolution_is_exact() {
+    let (young, force, length) = (1e4, 50.0, 3.0);
+    for shape in [Shape::Tri3, Shape::Quad4, Shape::Tri6, Shape::Quad8, Shape::Quad9] {
+        for inner in [0.0, 0.7] {
+            for element in ["AxisymSmallDisplacementElement", "AxisymTotalLagrangianElement"] {
+                let grid = Grid::new(shape, &[3, 2], |p| [inner + (2.0 - inner) * p[0], length * p[1], 0.0]);
+                let is_linear = element.contains("Small");
+                let law = if is_linear { "LinearElasticAxisym2DLaw" } else { "KirchhoffSaintVenantAxisym2DLaw" };
+                let force = if is_linear { force } else { 1e-6 * force };
+                let material = json!({"YOUNG_MODULUS": young, "POISSON_RATIO": 0.0});
+                let mut deck = Deck::new(&grid, element, law, material);
+                deck.fix(|p| p[1] == 0.0, [FREE, zero(), FREE]);
+                if inner == 0.0 {
+                    deck.fix(|p| p[0] == 0.0, [zero(), FREE, FREE]);
+                }
+                let ring = deck.facets(|p| p[1] == 1.0, "LineCondition");
+                let load = json!([0.0, format!("{force:?}*t"), 0.0]);
+                deck.process(FORCE, json!({"model_part_name": format!("Structure.{ring}"), "load": load}));
+                let ran = deck.run();
+                let what = format!("{element} {shape:?} {inner}");
+                assert_vector(loads(&ran)[0], [0.0, force, 0.0], force, &what);
+                let area = std::f64::consts::PI * (4.0 - inner * inner);
+                for node in grid.nodes_where(|p| p[1] == 1.0) {
+                    let u = ran.last("DISPLACEMENT", node);
+                    let expected = force * length / (young * area);
+                    let allowed = if is_linear { 1e-11 } else { 1e-7 };
+                    assert_close(u[1], expected, allowed, &what);
+                    assert!(u[0].abs() < allowed * expected, "{what}: {u:?}");
+                }
+            }
+        }
+    }
+}
+
+/// Loads that no ring takes are named before the run, with pressure as the remedy.
+#[test]
+fn resultants_that_a_ring_cannot_take_are_named() {
+    let grid = Grid::new(Shape::Quad4, &[2, 2], |p| [1.0 + p[0], p[1], 0.0]);
+    for (settings, words) in [
+        (json!({"force": [1.0, 2.0, 0.0]}), "along the radius cancels"),
+        (json!({"moment": [0.0, 0.0, 1.0]}), "no rotation on which a moment could act"),
+        (json!({"force": [0.0, 1.0, 0.0], "point": [1.0, 0.0, 0.0]}), "\"point\" lies beside it"),
+        (json!({"force": [0.0, 1.0, 0.0], "follower": true}), "keeps its direction"),
+    ] {
+        let material = json!({"YOUNG_MODULUS": 1.0, "POISSON_RATIO": 0.3});
+        let mut deck = Deck::new(&grid, "AxisymSmallDisplacementElement", "LinearElasticAxisym2DLaw", material);
+        deck.fix(|p| p[1] == 0.0, [FREE, zero(), FREE]);
+        let mut settings = settings;
+        settings["model_part_name"] = json!(format!("Structure.{}", deck.facets(|p| p[1] == 1.0, "LineCondition")));
+        deck.process(RESULTANT, settings);
+        let said = deck.problem();
+        for word in ["axisymmetric-resultant", words, "PRESSURE"] {
+            assert!(said.contains(word), "no {word:?} in: {said}");
+        }
+    }
+}
+
 /// A moment about a line of nodes and loads out of the plane are named before the run.
 #[test]
 fn mistakes_are_named() {

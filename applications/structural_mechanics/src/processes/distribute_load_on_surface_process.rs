@@ -2,7 +2,8 @@
 //!
 //! Nodal forces are those of the initial geometry. Dead loads keep their directions; follower loads follow the mean rotation of the
 //! part at the start of each step. Each node of the part gets a
-//! `ResultantLoadCondition`, so that the mesh needs no load conditions.
+//! `ResultantLoadCondition`, so that the mesh needs no load conditions. On a body of revolution the force is that on the whole turn, along
+//! the axis.
 
 use std::ops::Range;
 
@@ -15,7 +16,7 @@ use zelus_core::register;
 use zelus_core::vector3::dot;
 
 use super::nodal_conditions::add_conditions;
-use super::resultant::Resultant;
+use super::resultant::{Resultant, is_of_revolution};
 use crate::variables::{DISPLACEMENT, RESULTANT_LOAD};
 
 struct DistributeLoad {
@@ -72,10 +73,24 @@ fn made(
     let problem = |code, fact: String, remedy: &str| {
         Diagnostic::error(code, fact).at(target.place.clone()).remedy(remedy.to_owned())
     };
-    if part.elements.kinds.iter().any(|kind| kind.name.contains("Axisym")) {
-        let fact = format!("{} of a body of revolution has no resultant but along the axis", target.path);
-        return Err(problem("axisymmetric-resultant", fact, "divide the force by the area, as LINE_LOAD").into());
+    let of_revolution = is_of_revolution(part);
+    if of_revolution {
+        let is_off_axis = point.is_some_and(|point: [f64; 3]| point[0] != 0.0);
+        let refused = [
+            (!(force[0].is_zero() && force[2].is_zero()), "a force along the radius cancels over the whole turn"),
+            (!moment.iter().all(ScalarValue::is_zero), "the body has no rotation on which a moment could act"),
+            (is_off_axis, "the force on the whole turn acts on the axis, and \"point\" lies beside it"),
+            (follower, "the force on the whole turn keeps its direction, that of the axis"),
+        ];
+        if let Some((_, why)) = refused.into_iter().find(|(is_refused, _)| *is_refused) {
+            let fact = format!("{} is of a body of revolution: {why}", target.path);
+            let remedy = "give the force along y alone, that on the whole turn; for loads along the radius use PRESSURE, or \
+                          LINE_LOAD (force per area)";
+            return Err(problem("axisymmetric-resultant", fact, remedy).into());
+        }
     }
+    // A force on the whole turn is one at the centre of the section.
+    let point = point.filter(|_| !of_revolution);
     if part.info.domain_size == 2 {
         let lost = !(force[2].is_zero() && moment[0].is_zero() && moment[1].is_zero());
         if lost {
