@@ -404,11 +404,8 @@ fn a_carried_ball_spins_three_times() {
         let more = json!({"mass": 2.0, "inertia": if dim == 2 { json!(0.4) } else { json!([0.4, 0.4, 0.4]) }});
         let mut deck = carried(&grid, true, (0.005, 1.0), point, more);
         let [x, y, z] = omega;
-        let velocity = [
-            format!("{y:?}*Z-({z:?})*Y"),
-            format!("{z:?}*(X-1.0)-({x:?})*Z"),
-            format!("{x:?}*Y-({y:?})*(X-1.0)"),
-        ];
+        let velocity =
+            [format!("{y:?}*Z-({z:?})*Y"), format!("{z:?}*(X-1.0)-({x:?})*Z"), format!("{x:?}*Y-({y:?})*(X-1.0)")];
         let settings = json!({"model_part_name": "Structure", "variable_name": "VELOCITY",
             "constrained": [false, false, false], "value": velocity, "interval": [0.0, 0.0]});
         deck.process("assign_vector_variable_process", settings);

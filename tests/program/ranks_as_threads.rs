@@ -133,12 +133,24 @@ pub fn hang_a_body(lists: &mut Value) {
     constraints[3] = vector("Structure", "VOLUME_ACCELERATION", false, [0.0, 0.0, -0.4]);
 }
 
+/// Force and moment on the distributing coupling of `constraints/coupled_block`.
+pub fn bend_by_the_mean(lists: &mut Value) {
+    let load = |variable: &str, value: [&str; 3]| {
+        json!({"python_module": "assign_vector_variable_to_conditions_process", "Parameters": {
+            "model_part_name": "Structure.Sensor", "variable_name": variable, "value": value}})
+    };
+    let constraints = lists["constraints_process_list"].as_array_mut().expect("a list");
+    constraints.push(load("POINT_MOMENT", ["0.2*t", "0.1*t", "0.3*t"]));
+    constraints.push(load("POINT_LOAD", ["0.1*t", "-0.2*t", "0.1*t"]));
+}
+
 /// Reference nodes and masses that are made before ranks share the mesh.
 #[test]
 fn couplings() {
     // The mesh is small: every rank has all of it.
     stand_side_by_side_with("constraints/coupled_block", false, |_| {});
     stand_side_by_side_with("constraints/coupled_block", false, hang_a_body);
+    stand_side_by_side_with("constraints/coupled_block", false, bend_by_the_mean);
 }
 
 /// Ranks that have nothing of a variable measure it with the others.

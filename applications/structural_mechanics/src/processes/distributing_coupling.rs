@@ -365,7 +365,12 @@ impl RotatingCoupling for DistributingCoupling {
             theta = vector_of(&self.resultant.rotation_to(&x, space)?, theta);
         }
         let cloud = self.cloud(part, x, &|v| rotated(theta, v))?;
-        let [force, moment] = [&REACTION, &REACTION_MOMENT].map(|of| scale(vector_at(part, of, self.reference), -1.0));
+        let share = if part.owns_node(self.reference as usize) { -1.0 } else { 0.0 };
+        let mut loads = [&REACTION, &REACTION_MOMENT].map(|of| scale(vector_at(part, of, self.reference), share));
+        if part.share.is_some() {
+            part.ranks.sum(loads.as_flattened_mut());
+        }
+        let [force, moment] = loads;
         let q = cloud.spread(add(moment, cross(cloud.offset, force)));
         let of_node = |sum, (x, arm): (&[f64; 3], &[f64; 3])| {
             add_scaled(sum, of_arm(sub(*x, cloud.centre), cross(q, *arm)), -1.0)

@@ -126,11 +126,15 @@ impl RotatingCoupling for KinematicCoupling {
         let [translations, rotations] = components(part.info.domain_size);
         let nodes = self.arms.iter().map(|arm| (arm, &*self.coupled));
         let nodes = nodes.chain(self.masses.iter().map(|arm| (arm, translations)));
-        let l = nodes.fold(Matrix::default(), |sum, (&(node, arm), coupled)| {
+        let own = nodes.filter(|((node, _), _)| part.owns_node(*node as usize));
+        let mut l = own.fold(Matrix::default(), |sum, (&(node, arm), coupled)| {
             let reaction = vector_at(part, &REACTION, node);
             let force = std::array::from_fn(|c| if coupled.contains(&(c as u8)) { -reaction[c] } else { 0.0 });
             add_scaled(sum, of_arm(rotated(theta, arm), force), 1.0)
         });
+        if part.share.is_some() {
+            part.ranks.sum(l.as_flattened_mut());
+        }
         let unit = |k: u8| std::array::from_fn(|c| f64::from(u8::from(c == usize::from(k))));
         Some(RotationTangent { l, ways: rotations.iter().map(|&k| [unit(k), spin(theta, unit(k))]).collect() })
     }

@@ -33,6 +33,7 @@ pub(super) trait RotatingCoupling: Send + Sync {
     }
 
     /// The tangent of its forces at the present state, whose forces are minus REACTION and REACTION_MOMENT; `None` where it has none.
+    /// Collective.
     fn tangent(&self, part: &ModelPart) -> Option<RotationTangent>;
 }
 
@@ -71,7 +72,7 @@ fn take_turns(part: &mut ModelPart, node: u32) {
 pub(super) struct LargeRotation {
     coupling: Box<dyn RotatingCoupling>,
     version: u64,
-    /// The tangent of its forces; `None` over ranks, which iterate without it.
+    /// The tangent of its forces; `None` before it is made.
     stiffness: Option<RotationStiffness>,
     /// Whether it acts in this step: supports do not prescribe the rotation.
     is_free: bool,
@@ -114,9 +115,7 @@ impl Interaction for LargeRotation {
     }
 
     fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {
-        if part.share.is_none() {
-            self.stiffness = Some(self.make_stiffness(part)?);
-        }
+        self.stiffness = Some(self.make_stiffness(part)?);
         Ok(())
     }
 
@@ -164,7 +163,10 @@ impl ActiveSet for LargeRotation {
 
     fn after_update(&mut self, part: &mut ModelPart, _iteration: usize) -> Result<SetChange> {
         if let Some(own) = self.stiffness.as_mut().filter(|_| self.is_free) {
-            own.tangent = self.coupling.tangent(part).unwrap_or_default();
+            let tangent = self.coupling.tangent(part).unwrap_or_default();
+            // One rank assembles it.
+            let is_own = part.owns_node(self.coupling.reference() as usize);
+            own.tangent = if is_own { tangent } else { RotationTangent::default() };
         }
         self.follow(part, false)?;
         Ok(SetChange::default())
