@@ -323,7 +323,13 @@ impl DistributingCoupling {
         };
         let omega = cloud.spin_of(&velocities);
         let inward = |arm: [f64; 3]| if large { cross(omega, cross(omega, arm)) } else { [0.0; 3] };
-        accelerations.iter_mut().zip(&cloud.x).for_each(|(a, x)| *a = sub(*a, inward(sub(*x, cloud.centre))));
+        // Where no acceleration is given, the spin is steady.
+        let is_given = accelerations.iter().any(|a| *a != [0.0; 3]);
+        accelerations
+            .iter_mut()
+            .zip(&cloud.x)
+            .filter(|_| is_given)
+            .for_each(|(a, x)| *a = sub(*a, inward(sub(*x, cloud.centre))));
         let alpha = cloud.spin_of(&accelerations);
         let v = add(mean(&velocities), cross(omega, cloud.offset));
         let a = add(add(mean(&accelerations), cross(alpha, cloud.offset)), inward(cloud.offset));
@@ -437,8 +443,14 @@ mod tests {
             place: zelus_core::diagnostics::Place::command_line("test"),
             process: "coupling".to_owned(),
         };
-        let masses =
-            KinematicCoupling { reference: 6, arms: Vec::new(), coupled: Vec::new(), masses: Vec::new(), made: 0..0 };
+        let masses = KinematicCoupling {
+            reference: 6,
+            arms: Vec::new(),
+            coupled: Vec::new(),
+            masses: Vec::new(),
+            by_spins: !leads,
+            made: 0..0,
+        };
         (part, DistributingCoupling { target, reference: 6, resultant, leads, sample: Vec::new(), masses, made: 0..0 })
     }
 

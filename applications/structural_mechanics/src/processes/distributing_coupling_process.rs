@@ -13,6 +13,7 @@ use zelus_core::register;
 
 use super::constraints_of_process::{couple, uncouple};
 use super::distributing_coupling::{DistributingCoupling, far_nodes};
+use super::kinematic_coupling::KinematicCoupling;
 use super::kinematic_coupling_process::{coupled_part, has_large_rotations, masses_at, prepare};
 use super::large_rotation::LargeRotation;
 use super::reference_node::{ReferenceNode, refuse_revolution, required};
@@ -48,7 +49,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
         resultant,
         leads,
         sample,
-        masses: masses_at(&settings, part, &reference)?,
+        masses: KinematicCoupling { by_spins: !leads, ..masses_at(&settings, part, &reference)? },
         made: 0..0,
     };
     if coupling.small_rows(part).is_none() {

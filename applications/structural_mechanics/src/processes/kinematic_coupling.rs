@@ -34,6 +34,8 @@ pub(super) struct KinematicCoupling {
     pub coupled: Vec<u8>,
     /// Masses of the rigid body with their arms: all components follow.
     pub masses: Vec<(u32, [f64; 3])>,
+    /// Whether ROTATION of the reference node follows others, by spins δω in place of δθ.
+    pub by_spins: bool,
     /// Its constraints, by their place in the model part.
     pub made: Range<usize>,
 }
@@ -44,10 +46,11 @@ impl KinematicCoupling {
         let [translations, rotations] = components(space);
         let counted = add(theta, turns);
         let unit = |k: u8| std::array::from_fn(|c| f64::from(u8::from(c == usize::from(k))));
+        let way = |k: u8| if self.by_spins { unit(k) } else { spin(theta, unit(k)) };
         let of_node = |(&(node, arm), coupled): (&(u32, [f64; 3]), &[u8])| {
             let now = rotated(theta, arm);
             let slopes: Vec<[[f64; 3]; 2]> =
-                rotations.iter().map(|&k| [spin(theta, unit(k)), unit(k)].map(|axis| cross(axis, now))).collect();
+                rotations.iter().map(|&k| [way(k), unit(k)].map(|axis| cross(axis, now))).collect();
             let of_component = move |&c: &u8| {
                 let at = usize::from(c);
                 let by_rotation = rotations.iter().zip(&slopes).map(|(&k, slopes)| (k, slopes.map(|slope| slope[at])));

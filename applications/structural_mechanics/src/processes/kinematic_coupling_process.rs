@@ -86,7 +86,7 @@ pub(super) fn masses_at(settings: &Settings, part: &ModelPart, reference: &Refer
             nodes.filter(|&node| node != reference).map(|node| (node, arm(node))).collect()
         }
     };
-    Ok(KinematicCoupling { reference, arms: Vec::new(), coupled: Vec::new(), masses, made: 0..0 })
+    Ok(KinematicCoupling { reference, arms: Vec::new(), coupled: Vec::new(), masses, by_spins: false, made: 0..0 })
 }
 
 /// Whether the constraints of a part follow large rotations; collective.
