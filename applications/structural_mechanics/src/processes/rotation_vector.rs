@@ -96,7 +96,7 @@ pub(super) fn vector_of(rotation: &[[f64; 3]; 3], next_to: [f64; 3]) -> [f64; 3]
 mod tests {
     use super::*;
 
-    const SIZES: [f64; 8] = [0.0, 1e-8, 0.9 * SMALL, 1.1 * SMALL, 0.7, 3.0, 3.141, 6.0];
+    const SIZES: [f64; 8] = [0.0, 1e-8, 0.9 * SMALL, 1.1 * SMALL, 0.7, 3.0, 3.1411, 6.0];
 
     fn along_axis(size: f64) -> [f64; 3] {
         scale([2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0], size)
