@@ -100,6 +100,34 @@ fn a_force_without_a_moment_converges_at_once() {
     }
 }
 
+/// REGRESSION: multigrid takes at most 1.3 times the iterations of a body under a load on its face when that face is coupled to a
+/// reference node, in it or beside it. 1.3 is the difference between loads.
+#[test]
+fn multigrid_keeps_its_iterations() {
+    let iterations = |coupling: Option<(&str, Vec3)>| {
+        let grid = Grid::new(Shape::Hex8, &[12, 16, 16], |p| [12.0 * p[0], 16.0 * (p[1] - 0.5), 16.0 * (p[2] - 0.5)]);
+        let material = json!({"YOUNG_MODULUS": 2.1e5, "POISSON_RATIO": 0.3});
+        let mut deck = Deck::new(&grid, "SmallDisplacementElement", "LinearElastic3DLaw", material);
+        deck.set("linear_solver_settings", json!({"solver_type": "amgcl"}));
+        deck.fix(|p| p[0] == 0.0, [zero(), zero(), zero()]);
+        if let Some((process, point)) = coupling {
+            let end = deck.facets(|p| p[0] == 1.0, "SurfaceLoadCondition");
+            couple(&mut deck, process, &end, point, json!({}));
+            load(&mut deck, [0.0, 256.0, 0.0], [0.0; 3]);
+        } else {
+            deck.vector_load(|p| p[0] == 1.0, "SurfaceLoadCondition", "SURFACE_LOAD", [zero(), json!(1.0), zero()]);
+        }
+        let ran = deck.run();
+        let of_steps = ran.report.steps.iter().flat_map(|step| &step.iterations);
+        of_steps.map(|iteration| iteration.linear_iterations).max().expect("an iteration")
+    };
+    let plain = iterations(None);
+    let coupled = [(KINEMATIC, 12.0), (KINEMATIC, 18.0), (DISTRIBUTING, 12.0), (DISTRIBUTING, 18.0)]
+        .map(|(process, x)| iterations(Some((process, [x, 0.0, 0.0]))));
+    println!("{plain} iterations, {coupled:?} with couplings");
+    assert!(plain > 5 && coupled.iter().all(|&number| 10 * number <= 13 * plain), "{plain}, {coupled:?}");
+}
+
 /// ANALYTIC: a bar without axial motion is twisted by u = θ x/L e_x × r, M = G J_p θ/L with the polar moment of area; trilinear shapes
 /// hold that. The rotation is that of the moment, and the moment of the supports that of a prescribed rotation.
 #[test]

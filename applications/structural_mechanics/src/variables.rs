@@ -174,4 +174,5 @@ register_rates! { "ROTATION",
     first: "ANGULAR_VELOCITY",
     second: Some("ANGULAR_ACCELERATION"),
     reaction: Some("REACTION_MOMENT"),
+    turns: Some("DISPLACEMENT"),
 }

@@ -3,7 +3,7 @@
 use zelus_linear_algebra::parallel;
 
 use crate::communication::Ranks;
-use crate::model::ScalarVariable;
+use crate::model::{Rates, ScalarVariable};
 
 /// Axes that a rotation turns into each other.
 const ROTATIONS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
@@ -11,8 +11,8 @@ const ROTATIONS: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 /// The unknown of an equation and the initial position of its node; multipliers have none.
 pub type DofPosition = Option<(ScalarVariable, [f64; 3])>;
 
-/// The near-null space of equations: for each vector field of the unknowns its translations and rotations, for each scalar
-/// one the constant. Entries of multipliers are zero.
+/// The near-null space of equations: for each vector field of the unknowns its translations and rotations, the latter with the field that
+/// [turns](Rates::turns) it, for each scalar one the constant. Entries of multipliers are zero.
 pub fn near_null_space(places: &[DofPosition]) -> Vec<Vec<f64>> {
     let mut variables: Vec<ScalarVariable> = Vec::new();
     let (mut center, share) = ([0.0; 3], 1.0 / places.len() as f64);
@@ -50,23 +50,35 @@ fn motions(places: &[DofPosition], variables: &[ScalarVariable], center: [f64; 3
         field.1[variable.offset()] = true;
     }
     let mut space = Vec::new();
+    let turned = |column: &str| Rates::of(column).and_then(|rates| rates.turns);
+    let names: Vec<&str> = fields.iter().map(|(column, ..)| *column).collect();
     for (column, has, is_vector) in fields {
-        let mut add = |value: &(dyn Fn(usize, &[f64; 3]) -> f64 + Sync)| {
+        // Rotations alone are no motions: they go with what they turn.
+        if turned(column).is_some_and(|other| names.contains(&other)) {
+            continue;
+        }
+        let rotation = names.iter().find(|name| turned(name) == Some(column));
+        let unit = |is_one: bool| f64::from(u8::from(is_one));
+        let mut add = |axis: usize, value: &(dyn Fn(usize, &[f64; 3]) -> f64 + Sync), is_rotation: bool| {
             let of = |place: &DofPosition| match place {
                 Some((variable, at)) if variable.column == column => value(variable.offset(), at),
+                Some((variable, _)) if is_rotation && Some(&variable.column) == rotation => {
+                    unit(variable.offset() == axis)
+                }
                 _ => 0.0,
             };
             space.push(parallel::map(places.len(), 4096, |at| of(&places[at])));
         };
         for axis in (0..3).filter(|&axis| has[axis]) {
-            add(&|along, _| f64::from(u8::from(along == axis)));
+            add(axis, &|along, _| unit(along == axis), false);
         }
         for [a, b] in ROTATIONS.into_iter().filter(|[a, b]| is_vector && has[*a] && has[*b]) {
-            add(&|along, at| match along {
+            let rotated = |along: usize, at: &[f64; 3]| match along {
                 _ if along == a => center[b] - at[b],
                 _ if along == b => at[a] - center[a],
                 _ => 0.0,
-            });
+            };
+            add(3 - a - b, &rotated, true);
         }
     }
     space
@@ -75,7 +87,7 @@ fn motions(places: &[DofPosition], variables: &[ScalarVariable], center: [f64; 3
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::test_variables::DISPLACEMENT;
+    use crate::model::test_variables::{DISPLACEMENT, ROTATION};
 
     #[test]
     fn a_vector_field_translates_and_rotates() {
@@ -84,6 +96,22 @@ mod tests {
         let space = near_null_space(&[Some((x, first)), Some((y, first)), Some((x, second)), Some((y, second))]);
         let expected = [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 1.0], [2.0, -1.0, -2.0, 1.0]];
         assert_eq!(space, expected.map(|vector| vector.to_vec()));
+    }
+
+    #[test]
+    fn rotations_of_bodies_turn_their_reference_nodes() {
+        let [x, y, spin] = [DISPLACEMENT.component(0), DISPLACEMENT.component(1), ROTATION.component(2)];
+        let (first, second) = ([0.0; 3], [2.0, 4.0, 0.0]);
+        let space = near_null_space(&[(x, first), (y, first), (spin, first), (x, second), (y, second)].map(Some));
+        let [translations @ .., rotation] = &space[..] else { panic!("{space:?}") };
+        assert_eq!(translations, [[1.0, 0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0, 1.0]]);
+        // About the mean place (4/5, 8/5) of the unknowns.
+        let expected = [1.6, -0.8, 1.0, -2.4, 1.2];
+        assert!(
+            rotation.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-12),
+            "{rotation:?}"
+        );
+        assert_eq!(near_null_space(&[Some((spin, first))]).len(), 1, "a field alone has constants");
     }
 
     #[test]

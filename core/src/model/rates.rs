@@ -28,6 +28,8 @@ pub struct Rates {
     pub rayleigh: Option<[&'static str; 2]>,
     /// Whether nodes move with it, as with a displacement.
     pub moves_mesh: bool,
+    /// The vector of which it is the rotation: rotations of bodies are in both.
+    pub turns: Option<&'static str>,
 }
 
 /// Selector of one of the columns that go with an unknown.
@@ -57,6 +59,7 @@ impl Rates {
             mass: None,
             rayleigh: None,
             moves_mesh: false,
+            turns: None,
         }
     }
 

@@ -8,6 +8,7 @@ register_variable! {
     pub ACCELERATION: [f64; 3] = "Acceleration of the tests.";
     pub NORMAL: [f64; 3] = "Normal of the tests.";
     pub REACTION: [f64; 3] = "Reaction of the tests.";
+    pub ROTATION: [f64; 3] = "Rotation of the tests.";
 }
 register_flags! {
     pub SLAVE = "A mark of the tests.";
@@ -17,4 +18,8 @@ register_rates! { "DISPLACEMENT",
     second: Some("ACCELERATION"),
     reaction: Some("REACTION"),
     moves_mesh: true,
+}
+register_rates! { "ROTATION",
+    first: "VELOCITY",
+    turns: Some("DISPLACEMENT"),
 }

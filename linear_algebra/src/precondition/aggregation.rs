@@ -9,6 +9,10 @@ use crate::parallel;
 pub(super) const NONE: u32 = u32::MAX;
 /// Share of the geometric mean of two diagonal blocks above which their coupling is strong.
 const STRONG: f64 = 0.02;
+/// Blocks in a row beyond which it may be a hub; nodes of meshes have fewer.
+const HUB: usize = 200;
+/// Times the mean number of blocks in a row beyond which a row is a hub; rows of coarse matrices may all be long.
+const LONGER: usize = 4;
 /// Share of a vector that must be left after orthogonalisation for it to be kept.
 const INDEPENDENT: f64 = 1e-6;
 
@@ -36,7 +40,8 @@ struct Strong {
 }
 
 impl Strong {
-    fn new(matrix: &BlockMatrix, bodies: &[u32]) -> Self {
+    /// The couplings in the own rows of a matrix; hubs have none.
+    fn new(matrix: &BlockMatrix, bodies: &[u32], is_hub: &[bool]) -> Self {
         let size = matrix.size();
         let square = |block: &[f32]| block.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>();
         let diagonal: Vec<f64> = parallel::map(matrix.rows, ROWS, |i| {
@@ -49,13 +54,14 @@ impl Strong {
                 let (columns, values) = matrix.row(i);
                 // Aggregates end where the blocks of others begin, and at the boundary of a body: bodies in contact move apart and
                 // slide.
-                let is_neighbour =
-                    |j: u32| j as usize != i && (j as usize) < matrix.rows && bodies[j as usize] == bodies[i];
-                let blocks = columns.iter().zip(values.chunks_exact(size)).filter(|(j, _)| is_neighbour(**j));
+                let is_neighbour = |j: usize| j != i && j < matrix.rows && bodies[j] == bodies[i] && !is_hub[j];
+                let blocks = columns.iter().zip(values.chunks_exact(size)).filter(|(j, _)| is_neighbour(**j as usize));
                 let is_strong = |j: u32, block: &[f32]| {
                     square(block) > (STRONG * STRONG) * (diagonal[i] * diagonal[j as usize]).sqrt()
                 };
-                lists.extend(blocks.filter(|(j, block)| is_strong(**j, block)).map(|(j, _)| *j));
+                if !is_hub[i] {
+                    lists.extend(blocks.filter(|(j, block)| is_strong(**j, block)).map(|(j, _)| *j));
+                }
                 ends.push(lists.len() as u32);
             }
             (ends, lists)
@@ -71,11 +77,22 @@ impl Strong {
     }
 }
 
-/// Aggregate of each block, and their number; blocks without strong neighbours have none.
+/// Aggregate of each block, and their number; blocks without strong neighbours have none. A hub, e.g. the reference node of a coupling, is
+/// an aggregate alone: joined with all it is coupled to, it would make a coarse node of a whole surface.
 fn aggregate(matrix: &BlockMatrix, bodies: &[u32]) -> (Vec<u32>, usize) {
-    let strong = Strong::new(matrix, bodies);
+    let blocks: usize = (0..matrix.rows).map(|i| matrix.row(i).0.len()).sum();
+    let is_hub = |i| {
+        let length = matrix.row(i).0.len();
+        length > HUB && length * matrix.rows > LONGER * blocks
+    };
+    let is_hub: Vec<bool> = (0..matrix.rows).map(is_hub).collect();
+    let strong = Strong::new(matrix, bodies, &is_hub);
     let mut of = vec![NONE; matrix.rows];
     let mut count = 0;
+    for g in (0..matrix.rows).filter(|&g| is_hub[g]) {
+        of[g] = count;
+        count += 1;
+    }
     for g in 0..matrix.rows {
         let near = strong.of(g);
         if of[g] == NONE && !near.is_empty() && near.iter().all(|&h| of[h as usize] == NONE) {
@@ -182,4 +199,42 @@ fn orthonormalise(list: &[usize], height: usize, near_null_space: &[Vec<f64>]) -
         }
     }
     (basis, triangle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain whose points are all coupled to one more, as the nodes of a face are to the reference node of a coupling.
+    #[test]
+    fn a_hub_is_an_aggregate_alone() {
+        let points = 3 * HUB;
+        let chain = BlockMatrix::from_rows([points + 1; 2], [1, 1], |i, row| {
+            if i == points {
+                (0..points as u32).for_each(|j| row.block(j)[0] = -1.0);
+                row.block(points as u32)[0] = points as f32;
+            } else {
+                [i.checked_sub(1), Some(i + 1).filter(|&j| j < points)]
+                    .into_iter()
+                    .flatten()
+                    .for_each(|j| row.block(j as u32)[0] = -1.0);
+                row.block(i as u32)[0] = 3.0;
+                row.block(points as u32)[0] = -1.0;
+            }
+        });
+        let (of, count) = aggregate(&chain, &vec![0; points + 1]);
+        assert_eq!(of.iter().filter(|&&a| a == of[points]).count(), 1);
+        assert_eq!(count, 1 + points / 3);
+        assert!(of.iter().all(|&a| a != NONE));
+    }
+
+    /// Rows that are all long, as those of coarse matrices, have no hubs: they would not become fewer.
+    #[test]
+    fn rows_that_are_all_long_are_no_hubs() {
+        let points = 2 * HUB;
+        let full = BlockMatrix::from_rows([points; 2], [1, 1], |i, row| {
+            (0..points).for_each(|j| row.block(j as u32)[0] = if i == j { points as f32 } else { -1.0e3 });
+        });
+        assert_eq!(aggregate(&full, &vec![0; points]).1, 1);
+    }
 }
