@@ -184,9 +184,11 @@ impl<'a> MdpaReader<'a> {
         self.problems.push(open.line, Diagnostic::error("cut-off", fact).remedy(remedy));
     }
 
-    /// A word of the heading of a block; nothing, said, when there is none.
+    /// A word of the heading of a block; `None`, with a message, when there is none.
     pub(super) fn heading(&mut self, open: OpenBlock, what: &str) -> Option<String> {
-        let word = self.tokens.peek().filter(|word| !matches!(*word, b"Begin" | b"End")).map(text);
+        // On the line of the block each word is a heading: parts may be called `End`.
+        let word = self.tokens.peek().map(text);
+        let word = word.filter(|word| self.tokens.line == open.line || !matches!(word.as_str(), "Begin" | "End"));
         if word.is_some() {
             self.tokens.word();
         } else {

@@ -229,3 +229,14 @@ fn sub_model_parts_are_nested_so_deep_and_no_deeper() {
     assert_eq!(nested(102), ["102 nested-too-deep"]);
     assert_eq!(nested(50_000), ["102 nested-too-deep"]);
 }
+
+/// Words of the format may be names of parts, as in Kratos.
+#[test]
+fn a_part_may_be_called_end() {
+    let text = "Begin SubModelPart End\nBegin SubModelPart Begin\nEnd SubModelPart\nEnd SubModelPart\n";
+    let (document, _) = read_text(text).unwrap();
+    let [part] = &document.sub_model_parts[..] else { panic!("{:?}", document.sub_model_parts) };
+    assert_eq!(part.name, "End");
+    assert_eq!(part.parts.iter().map(|part| part.name.as_str()).collect::<Vec<_>>(), ["Begin"]);
+    assert_eq!(problems("Begin SubModelPart\nEnd SubModelPart\n")[0], "1 bad-heading");
+}
