@@ -126,8 +126,11 @@ impl Measure {
                 checks
             }
         };
+        // The ratio of a variable at round-off says nothing: one within its tolerance stands for both.
+        let is_met = |check: &ConvergenceCheck| self.tolerance.met(check.ratio, check.absolute);
         let worse = |a: &ConvergenceCheck, b: &ConvergenceCheck| {
-            b.converged.cmp(&a.converged).then(a.ratio.total_cmp(&b.ratio))
+            let order = b.converged.cmp(&a.converged).then(is_met(a).cmp(&is_met(b)));
+            order.then(a.ratio.total_cmp(&b.ratio))
         };
         checks.sort_by(worse);
         checks.pop().unwrap_or_else(|| self.of_variable(Norm::default(), 0.0, || true))
@@ -198,6 +201,14 @@ mod tests {
             values: &of([1.0, 1e-17]),
             round_off: LazyCell::new(Box::new(|| of([1e-16, 1e-16]))),
         })
+    }
+
+    /// The second variable has a residual of round-off alone, 0.8 of which says nothing.
+    #[test]
+    fn the_ratio_shown_is_of_a_variable_with_a_tolerance_to_meet() {
+        let numbers = [[1.0, 1e-17], [1e-5, 0.8e-17], [0.0; 2]];
+        let shown = check(Form::Residual, true, 1.0, numbers);
+        assert!(shown.converged && (shown.ratio - 1e-5).abs() < 1e-12, "{shown:?}");
     }
 
     const UNITS: [f64; 5] = [1e-12, 1e-6, 1.0, 1e6, 1e12];
