@@ -66,6 +66,21 @@ fn iterations(ran: &Ran) -> Vec<usize> {
     ran.report.steps.iter().map(|step| step.iterations.len()).collect()
 }
 
+/// A plate or a block that is heated unevenly, held in one corner alone.
+fn heated(grid: &Grid, law: &str, material: Value) -> Ran {
+    let mut deck = Deck::new(grid, "SmallDisplacementElement", law, material);
+    deck.steps(0.25, 1.0).set("auxiliary_variables_list", json!(["TEMPERATURE"])).gauss("STATE_VARIABLES");
+    deck.set("residual_relative_tolerance", json!(1e-12));
+    deck.process(
+        "assign_scalar_variable_process",
+        json!({"model_part_name": "Structure", "variable_name": "TEMPERATURE", "value": "20+100*t*X*X+30*Y", "constrained": false}),
+    );
+    for axis in 0..grid.shape.dim() {
+        deck.fix(|p| p[axis] == 0.0, std::array::from_fn(|a| if a == axis { json!(0.0) } else { FREE }));
+    }
+    deck.run()
+}
+
 /// A body of a user material moves as one of the law that it repeats, with as many iterations: stress and tangent are those. The tolerance
 /// is that of Newton's iteration.
 fn same(element: &str, shape: Shape, [own, law]: [&str; 2], [user, known]: [Value; 2], size: f64) {
@@ -125,6 +140,43 @@ fn finite_elasticity_is_that_of_the_program() {
     }
     let laws = ["FiniteStrainUMATAxisym2DLaw", "HyperElasticAxisym2DLaw"];
     same("AxisymTotalLagrangianElement", Shape::Quad4, laws, of(), 0.3);
+}
+
+/// TEMP, DTEMP and COORDS, in plane stress (NDI = 2) too: a body with uneven temperatures warps as one of the program's law. The
+/// tolerance is that of Newton's iteration, and the round-off of Gauss points.
+#[test]
+fn routines_get_temperature_and_position() {
+    let folder = tempfile::tempdir().expect("a scratch folder");
+    let Some(library) = library(&["heated"], &folder, false) else { return };
+    let known = json!({"YOUNG_MODULUS": 200.0, "POISSON_RATIO": 0.3, "THERMAL_EXPANSION_COEFFICIENT": 1e-3,
+        "REFERENCE_TEMPERATURE": 20.0});
+    let mut own = user(&library, &[200.0, 0.3, 1e-3], 4);
+    own["REFERENCE_TEMPERATURE"] = json!(20.0);
+    for (shape, [law, other]) in [
+        (Shape::Hex8, ["SmallStrainUMAT3DLaw", "ThermalElasticIsotropic3D"]),
+        (Shape::Quad4, ["SmallStrainUMAT2DPlaneStressLaw", "ThermalLinearPlaneStress"]),
+    ] {
+        let grid = Grid::new(shape, &[2, 2, 1][..shape.dim()], |p| [2.0 * p[0], p[1], 0.5 * p[2]]);
+        let found = heated(&grid, law, own.clone());
+        let off = worst(&found, &heated(&grid, other, known.clone()), &grid);
+        assert!(off < 1e-9, "{law}: {off:e}");
+        // The first Gauss point of the first cell, 1 × 1/2 × 1/2.
+        let near = 0.5 - 0.5 / 3.0_f64.sqrt();
+        let state = &found.gauss("STATE_VARIABLES", 3)[0].1;
+        let z = if shape == Shape::Hex8 { 0.5 * near } else { 0.0 };
+        let place = [near, 0.5 * near, z];
+        assert!((0..3).all(|c| (state[c] - place[c]).abs() < 1e-14), "{state:?} instead of {place:?}");
+        // TEMPERATURE of the nodes of the cell, 20 + 100 x² + 30 y, interpolated.
+        let temperature = 20.0 + 100.0 * near + 15.0 * near;
+        assert!((state[3] - temperature).abs() < 1e-11, "{} instead of {temperature}", state[3]);
+    }
+    // A reference without a temperature says nothing.
+    let grid = Grid::new(Shape::Hex8, &[1, 1, 1], |p| p);
+    let mut deck = Deck::new(&grid, "SmallDisplacementElement", "SmallStrainUMAT3DLaw", own);
+    deck.fix(|_| true, [json!(0.0), json!(0.0), json!(0.0)]);
+    let (result, _) = deck.attempt();
+    let said = result.expect_err("no temperature").to_string();
+    assert!(said.contains("TEMPERATURE, which nodes do not have"), "{said}");
 }
 
 /// EXTERNAL: a program in Fortran calls the same subroutine along the same path of strains in all six components.

@@ -1,6 +1,7 @@
 //! One call of a UMAT: its arguments in the order and the layout of the calling convention.
 //!
-//! Voigt vectors are (11, 22, 33, 12, 13, 23) with engineering shear strains, matrices by columns; tension is positive.
+//! Voigt vectors are (11, 22, 33, 12, 13, 23), in plane stress (11, 22, 12), with engineering shear strains, matrices by columns; tension
+//! is positive.
 
 use std::sync::PoisonError;
 
@@ -39,7 +40,11 @@ pub struct Arguments<'a> {
     pub rotation: [f64; 9],
     /// TIME at the start and at the end.
     pub time: [f64; 2],
-    /// Components of stress: 4 or 6.
+    /// TEMPERATURE at the start and at the end.
+    pub temperature: [f64; 2],
+    /// COORDS of the point.
+    pub position: [f64; 3],
+    /// Components of stress: 6 in space, 4 in plane strain and about an axis, 3 in plane stress.
     pub components: usize,
     /// Constants.
     pub constants: &'a [f64],
@@ -69,14 +74,16 @@ impl Arguments<'_> {
     pub fn call(&mut self, subroutine: &Subroutine, in_turn: bool, states: &mut [f64]) {
         let [begin, end] = self.time;
         let (time, step) = ([begin, begin], end - begin);
-        let direct = 3;
-        let [shear, all, states_len, constants] =
-            [self.components - 3, self.components, states.len(), self.constants.len()].map(|n| n as i32);
+        let direct = if self.components == 3 { 2 } else { 3 };
+        let [direct, shear, all, states_len, constants] =
+            [direct, self.components - direct, self.components, states.len(), self.constants.len()].map(|n| n as i32);
+        let [start, reached] = self.temperature;
+        let heating = reached - start;
         let [element, point] = self.place.map(|n| n as i32);
         let [elastic, plastic, creep] = &mut self.energies;
         let (mut heat, mut by_temperature, mut heat_by_strain, mut heat_by_temperature) =
             (0.0, [0.0; COMPONENTS], [0.0; COMPONENTS], 0.0);
-        let (zero, none, one) = (0.0, [0.0; 3], 1);
+        let (zero, one) = (0.0, 1);
         let [gradient, next_gradient] = &self.gradients;
         let call = || {
             // SAFETY: the arguments have the sizes of the calling convention, and no one else has them.
@@ -96,8 +103,8 @@ impl Arguments<'_> {
                     self.increment.as_ptr(),
                     time.as_ptr(),
                     &step,
-                    &zero,
-                    &zero,
+                    &start,
+                    &heating,
                     &zero,
                     &zero,
                     self.name.as_ptr(),
@@ -107,7 +114,7 @@ impl Arguments<'_> {
                     &states_len,
                     self.constants.as_ptr(),
                     &constants,
-                    none.as_ptr(),
+                    self.position.as_ptr(),
                     self.rotation.as_ptr(),
                     &mut self.next_step,
                     &1.0,

@@ -11,7 +11,7 @@ use zelus_structural_mechanics::laws::{ConstitutiveLaw, LawEntry, LawFactory, Ma
 use zelus_structural_mechanics::tensor::{IDENTITY, Tensor, congruent, inverse, pairs, push_forward};
 
 use crate::arguments::{Arguments, COMPONENTS};
-use crate::material::{PAIRS, PastPoint, UserMaterial, components, tensor, vector};
+use crate::material::{CONSTANTS, PAIRS, PastPoint, UserMaterial, components, tensor, vector};
 use crate::tangent_check::warning;
 
 /// User material for finite strain.
@@ -41,7 +41,7 @@ impl FiniteStrainUmat {
             strain: vector(&congruent(&rotation, &tensor(&past.strain, 0.5)), 2.0),
             ..past
         };
-        let mut arguments = self.0.arguments(&rotated, components::<S>(), state.step, state.place);
+        let mut arguments = self.0.arguments(&rotated, components::<S>(), state);
         arguments.increment = vector(&strain, 2.0);
         arguments.gradients = [columns(&past.gradient), columns(&state.f)];
         arguments.rotation = columns(&rotation);
@@ -49,10 +49,10 @@ impl FiniteStrainUmat {
         arguments
     }
 
-    /// The accepted stress, where no time has passed since.
-    fn accepted<const S: usize>(state: &StrainState<'_, S>) -> Option<[f64; COMPONENTS]> {
+    /// The accepted stress, where nothing has changed since.
+    fn accepted<const S: usize>(&self, state: &StrainState<'_, S>) -> Option<[f64; COMPONENTS]> {
         let past = PastPoint::of(state.history);
-        past.time.filter(|time| *time >= state.step[1] && past.gradient == state.f).map(|_| past.stress)
+        (self.0.is_past(&past, state) && past.gradient == state.f).then_some(past.stress)
     }
 }
 
@@ -81,7 +81,7 @@ impl<const S: usize> ConstitutiveLaw<S> for FiniteStrainUmat {
             let stress = state.det_f * congruent(&back, stress);
             pairs::<S>().map(|pair| stress[pair])
         };
-        if let (None, Some(stress)) = (&tangent, Self::accepted(state)) {
+        if let (None, Some(stress)) = (&tangent, self.accepted(state)) {
             return pulled(&tensor(&stress, 1.0));
         }
         let arguments = self.respond(state, &mut |_| ());
@@ -101,6 +101,14 @@ impl<const S: usize> ConstitutiveLaw<S> for FiniteStrainUmat {
         self.0.is_symmetric
     }
 
+    fn expands(&self) -> bool {
+        self.0.needs_temperature()
+    }
+
+    fn reads_point(&self) -> bool {
+        true
+    }
+
     fn depends_on_time(&self) -> bool {
         true
     }
@@ -113,8 +121,7 @@ impl<const S: usize> ConstitutiveLaw<S> for FiniteStrainUmat {
         let mut states = Vec::new();
         let arguments = self.respond(state, &mut |now| states.extend_from_slice(now));
         let strain = std::array::from_fn(|c| arguments.strain[c] + arguments.increment[c]);
-        let point = PastPoint { stress: arguments.stress, strain, gradient: state.f, time: Some(state.step[1]) };
-        self.0.remember(&point, &states, history);
+        self.0.remember(&self.0.reached(state, arguments.stress, strain), &states, history);
     }
 
     fn internal(&self, state: &StrainState<'_, S>, variable: &str, out: &mut Vec<f64>) -> bool {
@@ -126,6 +133,7 @@ register! { LawEntry "FiniteStrainUMAT3DLaw",
     about: "User material for solids of finite strain: subroutine UMAT of the library UDSM_NAME; UMAT_PARAMETERS, STATE_VARIABLES",
     source: "calling convention of Abaqus' UMAT",
     build: LawFactory::Space(FiniteStrainUmat::boxed::<6>),
+    takes: CONSTANTS,
     warns: |properties, element| warning::<6>(properties, element, FiniteStrainUmat::boxed, false),
 }
 
@@ -133,6 +141,7 @@ register! { LawEntry "FiniteStrainUMAT2DPlaneStrainLaw",
     about: "User material of finite strain in plane strain: subroutine UMAT of the library UDSM_NAME; UMAT_PARAMETERS, STATE_VARIABLES",
     source: "calling convention of Abaqus' UMAT, with NTENS = 4",
     build: LawFactory::PlaneStrain { plane: FiniteStrainUmat::boxed::<3>, whole: FiniteStrainUmat::boxed::<4> },
+    takes: CONSTANTS,
     warns: |properties, element| warning::<4>(properties, element, FiniteStrainUmat::boxed, false),
 }
 
@@ -140,5 +149,6 @@ register! { LawEntry "FiniteStrainUMATAxisym2DLaw",
     about: "User material of finite strain with axial symmetry: subroutine UMAT of the library UDSM_NAME; UMAT_PARAMETERS, STATE_VARIABLES",
     source: "calling convention of Abaqus' UMAT, with NTENS = 4",
     build: LawFactory::Axisymmetric(FiniteStrainUmat::boxed::<4>),
+    takes: CONSTANTS,
     warns: |properties, element| warning::<4>(properties, element, FiniteStrainUmat::boxed, false),
 }

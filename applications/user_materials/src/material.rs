@@ -5,19 +5,25 @@ use std::sync::Arc;
 
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::model::{Properties, PropertyValue};
+use zelus_structural_mechanics::laws::StrainState;
 use zelus_structural_mechanics::tensor::Tensor;
 
 use crate::arguments::{Arguments, COMPONENTS, Name, name_of};
 use crate::library::{Subroutine, subroutine};
 
+/// Constants that only laws with a temperature take.
+pub const CONSTANTS: &[&str] = &["REFERENCE_TEMPERATURE"];
+
 /// Tensor components in the order of the calling convention.
 pub const PAIRS: [(usize, usize); COMPONENTS] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
-/// Places in the history: stress, strain, deformation gradient less 1, whether a step was accepted and its TIME, then states.
+/// Places in the history: stress, strain, deformation gradient less 1, whether a step was accepted and its TIME, temperature less that of
+/// reference, then states.
 const STRAIN: usize = COMPONENTS;
 const GRADIENT: usize = 2 * COMPONENTS;
 const TIME: usize = GRADIENT + 9;
-const STATES: usize = TIME + 2;
+const HEATING: usize = TIME + 2;
+const STATES: usize = HEATING + 1;
 
 thread_local! {
     static SCRATCH: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };
@@ -31,6 +37,8 @@ pub struct UserMaterial {
     states: Vec<f64>,
     name: Name,
     in_turn: bool,
+    /// Temperature before the first step, where it is given.
+    reference: Option<f64>,
     /// Whether its tangent is symmetric.
     pub is_symmetric: bool,
 }
@@ -46,6 +54,8 @@ pub struct PastPoint {
     pub gradient: Tensor,
     /// TIME, where a step was accepted.
     pub time: Option<f64>,
+    /// Temperature less that of reference.
+    pub heating: f64,
 }
 
 impl PastPoint {
@@ -54,7 +64,7 @@ impl PastPoint {
         let six = |at: usize| std::array::from_fn(|c| history[at + c]);
         let gradient = Tensor::from_fn(|i, j| history[GRADIENT + 3 * j + i]) + Tensor::identity();
         let time = (history[TIME] > 0.0).then_some(history[TIME + 1]);
-        Self { stress: six(0), strain: six(STRAIN), gradient, time }
+        Self { stress: six(0), strain: six(STRAIN), gradient, time, heating: history[HEATING] }
     }
 
     fn write(&self, history: &mut [f64]) {
@@ -62,7 +72,9 @@ impl PastPoint {
         history[STRAIN..GRADIENT].copy_from_slice(&self.strain);
         let change = self.gradient - Tensor::identity();
         history[GRADIENT..TIME].copy_from_slice(change.as_slice());
-        history[TIME..STATES].copy_from_slice(&[f64::from(u8::from(self.time.is_some())), self.time.unwrap_or(0.0)]);
+        let time = [f64::from(u8::from(self.time.is_some())), self.time.unwrap_or(0.0)];
+        history[TIME..HEATING].copy_from_slice(&time);
+        history[HEATING] = self.heating;
     }
 }
 
@@ -89,7 +101,18 @@ impl UserMaterial {
         };
         let in_turn = properties.number("UMAT_IS_THREAD_SAFE").is_none_or(|flag| flag == 0.0);
         let is_symmetric = properties.number("UMAT_IS_UNSYMMETRIC").is_none_or(|flag| flag == 0.0);
-        Ok(Self { subroutine: subroutine(properties)?, constants, states, name, in_turn, is_symmetric })
+        let reference = properties.number("REFERENCE_TEMPERATURE");
+        Ok(Self { subroutine: subroutine(properties)?, constants, states, name, in_turn, reference, is_symmetric })
+    }
+
+    /// Temperature before the first step.
+    fn reference(&self) -> f64 {
+        self.reference.unwrap_or(0.0)
+    }
+
+    /// Whether nodes must have a temperature.
+    pub fn needs_temperature(&self) -> bool {
+        self.reference.is_some()
     }
 
     /// Numbers of history of a point.
@@ -98,7 +121,12 @@ impl UserMaterial {
     }
 
     /// A call from a past point with `components` of stress, whose increment is still to be given.
-    pub fn arguments(&self, past: &PastPoint, components: usize, time: [f64; 2], place: [usize; 2]) -> Arguments<'_> {
+    pub fn arguments<const S: usize>(
+        &self,
+        past: &PastPoint,
+        components: usize,
+        state: &StrainState<'_, S>,
+    ) -> Arguments<'_> {
         let identity = std::array::from_fn(|at| if at % 4 == 0 { 1.0 } else { 0.0 });
         Arguments {
             stress: past.stress,
@@ -107,14 +135,32 @@ impl UserMaterial {
             increment: [0.0; COMPONENTS],
             gradients: [identity; 2],
             rotation: identity,
-            time: [past.time.unwrap_or(time[0]), time[1]],
+            time: [past.time.unwrap_or(state.step[0]), state.step[1]],
+            temperature: [self.reference() + past.heating, state.temperature],
+            position: state.position,
             components,
             constants: &self.constants,
             name: &self.name,
-            place,
+            place: state.place,
             energies: [0.0; 3],
             next_step: 1.0,
         }
+    }
+
+    /// The point that a state reaches with this stress and strain.
+    pub fn reached<const S: usize>(
+        &self,
+        state: &StrainState<'_, S>,
+        stress: [f64; COMPONENTS],
+        strain: [f64; COMPONENTS],
+    ) -> PastPoint {
+        let heating = state.temperature - self.reference();
+        PastPoint { stress, strain, gradient: state.f, time: Some(state.step[1]), heating }
+    }
+
+    /// Whether a state is the accepted one, but for its strain: no time has passed since, and no heat.
+    pub fn is_past<const S: usize>(&self, past: &PastPoint, state: &StrainState<'_, S>) -> bool {
+        past.time.is_some_and(|time| time >= state.step[1]) && self.reference() + past.heating == state.temperature
     }
 
     /// Calls the subroutine with the states of a history; `keep` gets those at the end. Stresses are not numbers where the routine asks
@@ -152,17 +198,18 @@ impl UserMaterial {
     }
 }
 
-/// Components of stress of a law with `S` Voigt components: a slab has the one across it, too.
+/// Components of stress of a law with `S` Voigt components, unless the stress across a plane is zero: plane strain has the one across
+/// it, too.
 pub const fn components<const S: usize>() -> usize {
     if S == 6 { 6 } else { 4 }
 }
 
-/// The place of each of `S` Voigt components in the calling convention.
-pub fn places<const S: usize>() -> [usize; S] {
+/// The place of each of `S` Voigt components among `components` of the calling convention.
+pub fn places<const S: usize>(components: usize) -> [usize; S] {
     std::array::from_fn(|c| match (S, c) {
         (6, 4) => 5,
         (6, 5) => 4,
-        (3, 2) => 3,
+        (3, 2) => components - 1,
         _ => c,
     })
 }

@@ -21,6 +21,7 @@ struct Trial<'a> {
     history: &'a [f64],
     element: usize,
     is_small: bool,
+    temperature: f64,
 }
 
 impl Trial<'_> {
@@ -33,6 +34,7 @@ impl Trial<'_> {
             f,
             det_f: f.determinant(),
             small: self.is_small,
+            temperature: self.temperature,
             step: [0.0, 1.0],
             place: [self.element, 1],
             history: self.history,
@@ -84,7 +86,8 @@ pub fn warning<const S: usize>(
 ) -> Option<Diagnostic> {
     let law = make(properties).ok()?;
     let history = vec![0.0; law.history()];
-    let trial = Trial { history: &history, element, is_small };
+    let temperature = properties.number("REFERENCE_TEMPERATURE").unwrap_or(0.0);
+    let trial = Trial { history: &history, element, is_small, temperature };
     let of_sizes = SIZES.into_iter().filter_map(|size| Some((size, trial.difference(&*law, size)?)));
     let (size, (share, [row, column])) = of_sizes.max_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
     if share <= TOLERANCE {

@@ -24,8 +24,11 @@ pub struct StrainState<'a, const S: usize> {
     pub small: bool,
     /// Pressure that the element holds constant, positive in compression; 0 in all other elements.
     pub pressure: f64,
-    /// TEMPERATURE, where the law asks for it ([`ConstitutiveLaw::expands`]); 0 otherwise.
+    /// TEMPERATURE, where the law asks for it ([`ConstitutiveLaw::expands`], [`ConstitutiveLaw::reads_point`]); 0 otherwise.
     pub temperature: f64,
+    /// Where the point is, initially in a small-displacement element and else at present, if the law reads it
+    /// ([`ConstitutiveLaw::reads_point`]); 0 otherwise.
+    pub position: [f64; 3],
     /// TIME at the beginning and at the end of the step.
     pub step: [f64; 2],
     /// Width of the band in which an element softens, where the law asks for it ([`ConstitutiveLaw::softens`]); 0 otherwise.
@@ -51,6 +54,7 @@ impl<'a, const S: usize> StrainState<'a, S> {
         small: true,
         pressure: 0.0,
         temperature: 0.0,
+        position: [0.0; 3],
         step: [0.0; 2],
         band: 0.0,
         band_as_kratos: false,
@@ -68,6 +72,7 @@ impl<'a, const S: usize> StrainState<'a, S> {
             small,
             pressure,
             temperature,
+            position,
             step,
             band,
             band_as_kratos,
@@ -84,6 +89,7 @@ impl<'a, const S: usize> StrainState<'a, S> {
             small,
             pressure,
             temperature,
+            position,
             step,
             band,
             band_as_kratos,
@@ -141,6 +147,11 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
 
     /// Whether the stress depends on the temperature.
     fn expands(&self) -> bool {
+        false
+    }
+
+    /// Whether the law is given the position of the point, and TEMPERATURE where nodes have one.
+    fn reads_point(&self) -> bool {
         false
     }
 

@@ -111,6 +111,10 @@ impl<const S: usize> ConstitutiveLaw<S> for ParallelMixture<S> {
         self.layers.iter().any(|(_, law)| law.expands())
     }
 
+    fn reads_point(&self) -> bool {
+        self.layers.iter().any(|(_, law)| law.reads_point())
+    }
+
     fn depends_on_time(&self) -> bool {
         self.layers.iter().any(|(_, law)| law.depends_on_time())
     }

@@ -66,12 +66,18 @@ pub(super) struct ElementMotion<const NODES: usize> {
 impl<const NODES: usize> ElementMotion<NODES> {
     /// The temperature where the shape functions are `n`, for laws that ask for it.
     fn temperature<const S: usize>(&self, material: &Material<S>, n: &[f64; NODES]) -> Result<f64, String> {
-        if !material.law.expands() {
-            return Ok(0.0);
+        let must = material.law.expands();
+        match self.temperatures {
+            Some(nodal) if must || material.law.reads_point() => Ok(n.iter().zip(nodal).map(|(n, t)| n * t).sum()),
+            None if must => Err(NO_TEMPERATURE.into()),
+            _ => Ok(0.0),
         }
-        let nodal = self.temperatures.ok_or(NO_TEMPERATURE)?;
-        Ok(n.iter().zip(nodal).map(|(n, t)| n * t).sum())
     }
+}
+
+/// Σ N_i x_i.
+fn position<const NODES: usize>(n: &[f64; NODES], x: &[[f64; 3]; NODES]) -> [f64; 3] {
+    std::array::from_fn(|c| n.iter().zip(x).map(|(n, x)| n * x[c]).sum())
 }
 
 /// Σ N_i x_i of the first coordinate.
@@ -277,6 +283,11 @@ impl<F: Formulation, const NODES: usize, const DIM: usize, const S: usize> Solid
                 small: !F::FINITE,
                 pressure: 0.0,
                 temperature: motion.temperature(material, n)?,
+                position: if material.law.reads_point() {
+                    position(n, if F::FINITE { &entity.current } else { &entity.initial })
+                } else {
+                    [0.0; 3]
+                },
                 step: motion.step,
                 band: motion.band.0,
                 band_as_kratos: motion.band.1,
