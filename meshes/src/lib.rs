@@ -21,6 +21,7 @@ mod vtu;
 mod series;
 mod vtkhdf;
 mod xdmf;
+mod stl;
 mod one_file;
 
 use std::path::Path;
@@ -31,6 +32,7 @@ use zelus_core::parameters::{Node, Object, Value};
 use zelus_core::registry;
 
 pub use mesh::Mesh;
+pub use stl::write_stl;
 pub use vtkhdf::write_vtkhdf;
 pub use xdmf::write_xdmf;
 

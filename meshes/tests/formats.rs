@@ -8,6 +8,7 @@ use zelus_core::io::mdpa::MdpaDocument;
 use zelus_core::io::{MeshFormatEntry, format_of};
 use zelus_core::parameters::{Node, Object, Value};
 use zelus_core::registry;
+use zelus_core::vector3::{cross, dot, norm, sub};
 use zelus_meshes::Mesh;
 use zelus_meshes::document;
 use zelus_structural_mechanics as _;
@@ -144,4 +145,49 @@ fn damaged_files_are_refused() {
         std::fs::write(folder.path().join(name), b"nothing of the kind").unwrap();
         assert!(read(&folder.path().join(name)).is_err(), "{name}");
     }
+}
+
+/// Triangles of a file of bytes.
+fn triangles_of(path: &Path) -> Vec<[[f64; 3]; 3]> {
+    let bytes = std::fs::read(path).unwrap();
+    let number = |at: usize| f64::from(f32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()));
+    let count = u32::from_le_bytes(bytes[80..84].try_into().unwrap()) as usize;
+    assert_eq!(bytes.len(), 84 + 50 * count);
+    let corner = |triangle: usize, k: usize| std::array::from_fn(|c| number(84 + 50 * triangle + 12 * (k + 1) + 4 * c));
+    (0..count).map(|triangle| std::array::from_fn(|k| corner(triangle, k))).collect()
+}
+
+/// ANALYTIC: the surface of three unit cubes encloses their volume (Σ a · (b × c)/6, positive where triangles point outwards), that of a
+/// part its own; each edge belongs to two triangles, in both directions. A part of faces alone is as large as they are. Single precision.
+#[test]
+fn surfaces_are_written_as_stl() {
+    let scratch = tempfile::tempdir().unwrap();
+    let to = scratch.path().join("surface.stl");
+    for name in ["solids_1_41.msh", "solids_2_41b.msh"] {
+        let document = read(&data(name)).unwrap();
+        let whole = size(&mesh(&data(name)), "Hexes", 3) * 3.0;
+        for (part, volume) in [(None, whole), (Some("Hexes"), 1.0), (Some("Prisms"), 1.0)] {
+            let count = zelus_meshes::write_stl(&document, part, &to).unwrap();
+            let triangles = triangles_of(&to);
+            assert_eq!(triangles.len(), count);
+            let found: f64 = triangles.iter().map(|[a, b, c]| dot(*a, cross(*b, *c)) / 6.0).sum();
+            assert!((found - volume).abs() < 1e-6, "{name} {part:?}: {found}");
+            let bits = |x: [f64; 3]| x.map(|c| (c + 0.0).to_bits());
+            let mut edges = std::collections::BTreeMap::new();
+            for own in &triangles {
+                for k in 0..3 {
+                    *edges.entry([bits(own[k]), bits(own[(k + 1) % 3])]).or_insert(0) += 1;
+                }
+            }
+            let is_closed = edges.iter().all(|([a, b], count)| *count == 1 && edges.get(&[*b, *a]) == Some(&1));
+            assert!(part.is_none() || is_closed, "{name} {part:?}");
+        }
+        zelus_meshes::write_stl(&document, Some("Top"), &to).unwrap();
+        let area: f64 = triangles_of(&to).iter().map(|[a, b, c]| 0.5 * norm(cross(sub(*b, *a), sub(*c, *a)))).sum();
+        assert!((area - 1.0).abs() < 1e-6, "{name}: {area}");
+        let said = zelus_meshes::write_stl(&document, Some("Hexen"), &to).unwrap_err().to_string();
+        assert!(said.contains("no part Hexen") && said.contains("Hexes"), "{said}");
+    }
+    let said = zelus_meshes::write_stl(&read(&data("disc_41.msh")).unwrap(), None, &to).unwrap_err().to_string();
+    assert!(said.contains("surfaces in space"), "{said}");
 }

@@ -1,4 +1,4 @@
-//! `zelus import` and `zelus convert`: meshes from one format to another, and results of many files to one.
+//! `zelus import` and `zelus convert`: meshes from one format to another, surfaces as STL, and results of many files to one.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use zelus_core::diagnostics::{Diagnostic, Place};
 use zelus_core::io::Mark;
 use zelus_core::io::mdpa::MdpaDocument;
 use zelus_core::parameters::{Node, Object, Value};
-use zelus_meshes::{RESULTS, format};
+use zelus_meshes::{RESULTS, format, write_stl};
 
 use super::report::check_output;
 use super::say::say;
@@ -29,9 +29,12 @@ pub(super) struct Import {
 pub(super) struct Convert {
     /// The mesh to read, or the results (.pvd) of a run.
     from: PathBuf,
-    /// The mesh to write; its ending selects the format. The results of all steps go into a file that ends in .vtkhdf, or in .xdmf
-    /// with its numbers in one that ends in .h5.
+    /// The mesh to write; its ending selects the format. The surface of bodies goes into a file that ends in .stl. The results of all steps
+    /// go into a file that ends in .vtkhdf, or in .xdmf with its numbers in one that ends in .h5.
     to: PathBuf,
+    /// The part whose surface an STL file gets, by default the whole mesh.
+    #[arg(long, value_name = "NAME")]
+    part: Option<String>,
     #[command(flatten)]
     how: How,
 }
@@ -54,7 +57,7 @@ struct How {
 pub(super) fn import(arguments: Import) -> Result<()> {
     let Import { file, output, how } = arguments;
     let to = output.unwrap_or_else(|| file.with_extension("mdpa"));
-    convert(&Convert { from: file, to, how })
+    convert(&Convert { from: file, to, part: None, how })
 }
 
 /// Writes a mesh in the format of the ending of its new name.
@@ -68,10 +71,21 @@ pub(super) fn convert(arguments: &Convert) -> Result<()> {
         return Ok(());
     }
     check_output("the mesh", to, &[from], Mark::None)?;
+    if ending.is_some_and(|ending| ending.eq_ignore_ascii_case("stl")) {
+        let (document, said) = read(arguments)?;
+        said.iter().for_each(|problem| say(&problem.to_string()));
+        let triangles = write_stl(&document, arguments.part.as_deref(), to)?;
+        say(&format!("written: {}, {triangles} triangles", to.display()));
+        return Ok(());
+    }
+    if arguments.part.is_some() {
+        let problem = Diagnostic::error("mesh-format", format!("{} takes no part alone", to.display()));
+        return Err(problem.remedy("write an STL file (.stl), or leave --part out").into());
+    }
     let target = format(to, None)?;
     let write = target.write.ok_or_else(|| {
         let fact = format!("meshes of the format {} are read only", target.name);
-        Diagnostic::error("mesh-format", fact).remedy("write .mdpa, .msh, .inp or .vtu")
+        Diagnostic::error("mesh-format", fact).remedy("write .mdpa, .msh, .inp, .vtu or .stl")
     })?;
     let (document, mut said) = read(arguments)?;
     said.extend(write(&document, to)?);

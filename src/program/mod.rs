@@ -85,7 +85,7 @@ enum Command {
     },
     /// Read a mesh of Gmsh, Abaqus, CalculiX or VTK and write it as an mdpa file; groups become sub model parts.
     Import(meshes::Import),
-    /// Read a mesh and write it in the format of its new name's ending: .mdpa, .msh, .inp, .vtu.
+    /// Read a mesh and write it in the format of its new name's ending: .mdpa, .msh, .inp, .vtu; its surface as .stl.
     Convert(meshes::Convert),
     /// Write a commented deck for a mesh, to start from: parts, materials, supports and contact pairs.
     New(starter::NewArguments),

@@ -126,6 +126,27 @@ fn a_deck_names_gmsh_s_file_itself() {
     assert!(own.iter().any(|u| u.abs() > 0.005) && own == imported);
 }
 
+/// A part of a mesh of Gmsh, written as STL, is a rigid shape without a word about its surface.
+#[test]
+fn a_surface_becomes_a_rigid_shape() {
+    let scratch = start("solids_1_41.msh");
+    let folder = scratch.path().join("deck");
+    let file = data("solids_1_41.msh");
+    let output = zelus(&folder, &["convert", file.to_str().unwrap(), "tool.stl", "--part", "Hexes"]);
+    assert!(output.status.success() && said(&output).contains("tool.stl, "), "{}", said(&output));
+    let path = folder.join("ProjectParameters.json");
+    let tool = json!({"python_module": "rigid_shape_process", "Parameters": {"model_part_name": "Structure.Tool",
+        "reference_model_part_name": "Structure.Centre", "shape": {"name": "stl", "file_name": "tool.stl"}, "position": [0.0, 0.0, 9.0]}});
+    let list = "\"constraints_process_list\": [";
+    let deck = std::fs::read_to_string(&path).unwrap();
+    assert!(deck.contains(list));
+    std::fs::write(&path, deck.replacen(list, &format!("{list}{tool},"), 1)).unwrap();
+    let output = zelus(&folder, &["check", "ProjectParameters.json"]);
+    assert!(!said(&output).contains("error["), "{}", said(&output));
+    let refused = zelus(&folder, &["convert", file.to_str().unwrap(), "part.inp", "--part", "Hexes"]);
+    assert_eq!(refused.status.code(), Some(2), "{}", said(&refused));
+}
+
 #[test]
 fn what_is_no_mesh_is_refused() {
     let scratch = tempfile::tempdir().unwrap();
