@@ -108,6 +108,17 @@ fn what_falls_freely_turns_its_weight_into_motion() {
     assert_near(of[3].energies.kinetic, 0.5 * weight[2].abs() * 10.0 * 0.875_f64.powi(2), 1e-9, "kinetic energy");
 }
 
+/// The energies of explicit steps do not depend on the number of ranks; REGRESSION: round-off, 1e-9 of the largest.
+#[test]
+fn energies_of_explicit_steps_are_the_same_on_any_number_of_ranks() {
+    let longer = |deck: &mut Value| deck["problem_data"]["end_time"] = json!(4e-5);
+    let alone = balances("contact_3d/explicit_touch", Ranks::default(), longer);
+    assert!(alone.iter().any(|balance| balance.energies.penalty > 0.0), "no contact");
+    for of_rank in on_threads(3, |ranks| balances("contact_3d/explicit_touch", ranks, longer)) {
+        is_same(&of_rank, &alone).unwrap_or_else(|what| panic!("{what}"));
+    }
+}
+
 #[test]
 fn sums_and_counts_are_the_same_on_any_number_of_ranks() {
     for case in ["contact_2d/friction_arc", "contact_3d/hexahedra_nonmatching", "mpc/pressed_and_opened_hexahedra"] {

@@ -401,26 +401,32 @@ fn explicit_contact_makes_no_energy() {
         }
     }
     let given = impact("explicit", 20, 0.9 * h, json!({"manual_ALM": true, "penalty": 10.0 / h}));
-    assert!(given.said.contains("warning[contact-step]"), "{}", given.said);
+    for code in ["warning[contact-step]", "warning[explicit-unstable]"] {
+        assert!(given.said.contains(code), "no {code} in {}", given.said);
+    }
 }
 
 /// A bar that hits the wall at 0.6 of its wave speed goes 0.3 of a cell into it, where contact of explicit steps is no more than the largest
 /// stable penalty: the run ends there, and says how it can be mended. A setting allows it.
 #[test]
 fn explicit_steps_that_pierce_are_refused() {
-    let folder = write_impact("explicit", 20, 0.02, 0.6, json!({}));
-    let output = zelus(folder.path(), &["run", DECK]);
-    assert_eq!(output.status.code(), Some(3), "{}", said(&output));
-    for words in
-        ["inside the master by more than 0.2 of their mesh size", "shorten \"time_step\"", "largest_penetration"]
-    {
-        assert!(said(&output).contains(words), "no {words:?} in: {}", said(&output));
+    for process in ["explicit_penalty_contact_process", "penalty_contact_process"] {
+        let folder = write_impact("explicit", 20, 0.02, 0.6, json!({}));
+        let path = folder.path().join(DECK);
+        let mut deck = read_json(&path).expect("the deck");
+        deck["processes"]["contact_process_list"][0]["python_module"] = json!(process);
+        write_json(&path, &deck);
+        let output = zelus(folder.path(), &["run", DECK]);
+        assert_eq!(output.status.code(), Some(3), "{process}: {}", said(&output));
+        for words in
+            ["inside the master by more than 0.2 of their mesh size", "shorten \"time_step\"", "largest_penetration"]
+        {
+            assert!(said(&output).contains(words), "{process}: no {words:?} in: {}", said(&output));
+        }
+        deck["solver_settings"]["contact_settings"]["largest_penetration"] = json!(0.0);
+        write_json(&path, &deck);
+        run(folder.path());
     }
-    let path = folder.path().join(DECK);
-    let mut deck = read_json(&path).expect("the deck");
-    deck["solver_settings"]["contact_settings"]["largest_penetration"] = json!(0.0);
-    write_json(&path, &deck);
-    run(folder.path());
 }
 
 /// The bar touches the wall for the time 2 L/c that a wave needs to its end and back, and leaves with the speed it came

@@ -144,6 +144,18 @@ fn scheme(deck: &mut Value, name: &str) {
     deck["solver_settings"]["scheme_type"] = json!(name);
 }
 
+/// Explicit steps of 2.2, which one element reaches with more mass: its own critical step is 2.4 times 0.8.
+fn explicit_with_scaled_mass(deck: &mut Value) {
+    let solver = &mut deck["solver_settings"];
+    solver["time_integration_method"] = json!("explicit");
+    solver["scheme_type"] = json!("central_differences");
+    solver["time_step_prediction_level"] = json!(2);
+    solver["delta_time_refresh"] = json!(7);
+    solver["max_delta_time"] = json!(9.0);
+    solver["mass_scaling_time_step"] = json!(2.2);
+    ends(deck, 100.0);
+}
+
 /// A body that starts with a spin.
 fn swing_a_body(deck: &mut Value) {
     hang_a_body(&mut deck["processes"]);
@@ -233,6 +245,7 @@ fn motion() {
         case("decks/oscillator", 40),
         Case { folder: "cases/constraints/coupled_block", change: swing_a_body, steps: 10 },
         case("cases/contact_3d/explicit_touch", 50),
+        Case { folder: "decks/oscillator", change: explicit_with_scaled_mass, steps: 40 },
     ]);
 }
 
@@ -475,6 +488,7 @@ fn motion_goes_on_over_other_ranks() {
         Case { folder: "decks/bouncing_block", change: |deck| scheme(deck, "generalized_alpha"), steps: 40 },
         Case { folder: "decks/bouncing_block", change: |deck| scheme(deck, "bdf2"), steps: 40 },
         case("cases/contact_3d/explicit_touch", 50),
+        Case { folder: "decks/oscillator", change: explicit_with_scaled_mass, steps: 40 },
     ]);
 }
 

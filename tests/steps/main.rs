@@ -2,6 +2,7 @@
 
 #[path = "../support/boxes.rs"]
 mod boxes;
+mod explicit_energy;
 mod impact;
 mod stages;
 mod step_cutting;

@@ -193,9 +193,10 @@ impl RunReport {
         }
     }
 
-    /// Adds the reactions by support to the balance of the last step, where it has one.
+    /// Adds the reactions by support to the balance of the last step, where it has one with sums of forces.
     pub(crate) fn add_supports(&mut self, of: impl FnOnce(&Balance) -> Vec<SupportReaction>) {
-        if let Some(balance) = self.steps.last_mut().and_then(|last| last.balance.as_mut()) {
+        let balance = self.steps.last_mut().and_then(|last| last.balance.as_mut());
+        if let Some(balance) = balance.filter(|balance| !balance.unknowns.is_empty()) {
             balance.supports = of(balance);
         }
     }

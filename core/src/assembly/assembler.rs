@@ -9,6 +9,8 @@ mod assembly_seconds;
 mod bulk_tangent;
 mod bulk_traits;
 mod dof_owners;
+mod force_kinds;
+mod element_scaling;
 mod coupling_tangent;
 mod inertia;
 mod inertia_matrices;
@@ -33,6 +35,8 @@ use zelus_linear_algebra::{Csr, Layout, Symmetry};
 
 pub use assembler_state::AssemblerState;
 pub use assembly_seconds::AssemblySeconds;
+pub use element_scaling::ScaledMass;
+pub use force_kinds::ForceKinds;
 pub use inertia::{Inertia, damped_by_properties, strongest_damping};
 pub use shares::PairForce;
 pub use whole_system::WholeSystem;

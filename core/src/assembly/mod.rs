@@ -18,8 +18,8 @@ mod supports;
 mod system;
 
 pub use assembler::{
-    Assembler, AssemblerState, AssemblySeconds, Inertia, PairForce, WholeSystem, damped_by_properties,
-    strongest_damping,
+    Assembler, AssemblerState, AssemblySeconds, ForceKinds, Inertia, PairForce, ScaledMass, WholeSystem,
+    damped_by_properties, strongest_damping,
 };
 pub use distribution::Distribution;
 pub use dof_table::{Dof, DofTable, NONE};

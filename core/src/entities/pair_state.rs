@@ -17,4 +17,6 @@ pub struct PairState {
     pub constraint_forces: Vec<(u32, [f64; 3])>,
     /// Energy that friction has turned into heat in the step.
     pub dissipated: f64,
+    /// Energy in the springs of a penalty; `None` where the forces are none of springs.
+    pub stored: Option<f64>,
 }

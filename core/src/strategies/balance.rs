@@ -107,8 +107,10 @@ pub struct SupportReaction {
     pub moment: [f64; 3],
 }
 
-/// Energies since the stage began, of unknowns that have inertia; works by the trapezoidal rule over steps.
+/// Energies since the stage began, of unknowns that have inertia; works by the trapezoidal rule over steps. Those of explicit steps
+/// are of the start of the step, as velocities are.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(remote = "Self")]
 pub struct Energies {
     /// Work against internal forces: strain energy, and dissipation of materials.
     pub stored: f64,
@@ -122,4 +124,19 @@ pub struct Energies {
     pub dissipated: f64,
     /// Kinetic energy at the end of the step.
     pub kinetic: f64,
+    /// Energy in the springs of penalty contact, ½ (ε g² + t²/(κ ε)) A over the slave nodes in contact.
+    #[serde(default)]
+    pub penalty: f64,
+    /// Work against damping, of explicit steps.
+    #[serde(default)]
+    pub damping: Option<f64>,
+    /// Part of the kinetic energy that central differences give short waves beyond their own, ½ (Δt/2)² a·M a.
+    #[serde(default)]
+    pub unresolved: Option<f64>,
+    /// Energy made (positive) or lost by explicit steps: kinetic − unresolved + stored + penalty + dissipated + damping − loads −
+    /// supports, less its value at the start of the stage.
+    #[serde(default)]
+    pub remainder: Option<f64>,
 }
+
+omitted_from_json!(Energies, "damping", "unresolved", "remainder");

@@ -26,6 +26,11 @@ impl CentralDifferences {
         Rates::add(&mut part.nodes.history, &[FIRST, SECOND, MIDDLE]);
     }
 
+    /// Time from the middle of the last step to its end; `None` before the first.
+    pub fn half_before(&self) -> Option<f64> {
+        self.begun.then_some(self.half_before)
+    }
+
     /// Moves the unknowns by the step under `acceleration` (one number an unknown).
     ///
     /// Unknowns for which `target` gives a value go there; their rates follow the motion.

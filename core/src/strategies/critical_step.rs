@@ -53,3 +53,12 @@ pub fn critical_step(assembler: &Assembler, dofs: &DofTable, mass: &[f64], [alph
     let ratio = 0.5 * (alpha / omega + beta * omega);
     2.0 / omega * ((1.0 + ratio * ratio).sqrt() - ratio)
 }
+
+/// The square of the highest frequency (1/time²) at which [`critical_step`] is still `step`; `None` where damping by mass alone makes
+/// such steps unstable.
+///
+/// From Δt = 2/ω (√(1+ξ²) − ξ): Δt²/4 ω² + Δt/2 (α + β ω²) = 1.
+pub(super) fn largest_square(step: f64, [alpha, beta]: [f64; 2]) -> Option<f64> {
+    let square = (1.0 - 0.5 * alpha * step) / (0.25 * step * step + 0.5 * beta * step);
+    (square > 0.0).then_some(square / MARGIN)
+}

@@ -61,6 +61,7 @@ impl EnergyBalance {
     ) -> Result<Balance> {
         let centre = *self.centre.get_or_insert_with(|| centre(part));
         let mut pairs = Pairs::of(part, system, centre);
+        let penalty = pairs.states.iter().filter_map(|state| state.stored).sum();
         let forces = forces(part, system, assembler, residual, inertia, more, &mut pairs)?;
         let pairs = pairs.finish(part);
         let unknowns = sums(part, system, residual, &forces, &pairs, centre);
@@ -79,6 +80,8 @@ impl EnergyBalance {
                 interactions: pending.works[INTERACTIONS],
                 dissipated: pending.dissipated.iter().sum(),
                 kinetic,
+                penalty,
+                ..Energies::default()
             },
             supports: Vec::new(),
         };

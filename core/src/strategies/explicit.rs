@@ -3,13 +3,17 @@
 //! Contact takes part as in Newton's iteration, but once a step and at the old positions: `begin_step`, `after_prediction`
 //! and `after_update` of each interaction, then its blocks in the residual. An interaction may shorten the steps while it acts
 //! ([`crate::entities::Interaction::step_factor`]). One that adds stiffness finds the longest step of the bodies there, [`CRITICAL_STEP`].
+//! Each step has its energy balance ([`super::explicit_energy`]); mass may be added to small elements ([`super::mass_scaling`]).
 
 use serde::{Deserialize, Serialize};
 use zelus_linear_algebra::{State, StateMapper, stored_as_bytes};
 
+use super::balance::Balance;
 use super::central_differences::CentralDifferences;
 use super::critical_step::critical_step;
 use super::dof_name::DofName;
+use super::explicit_energy::{EnergyFinding, ExplicitEnergy, ExplicitMotion, InteractionEnergies};
+use super::mass_scaling::MassScaling;
 use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::{SchemeEntry, SchemeFactory};
@@ -30,6 +34,8 @@ const OUT_OF_BALANCE: ColumnOf = |rates| rates.out_of_balance;
 
 /// Part of the critical step that a predicted step takes.
 const SAFETY: f64 = 0.8;
+/// Relative difference of steps that are the same.
+const SAME: f64 = 1e-9;
 /// Steps between two that are announced.
 const ANNOUNCED: usize = 100;
 
@@ -42,6 +48,8 @@ pub struct ExplicitSettings {
     pub refresh: usize,
     /// Longest step that a prediction may give.
     pub max_delta_time: f64,
+    /// Step that the mass of elements is raised for (time); 0 for none.
+    pub mass_scaling_step: f64,
     /// Rayleigh's factors of mass (1/time) and stiffness (time).
     pub rayleigh: [f64; 2],
     /// Whether prescribed unknowns move to the values they are given.
@@ -64,6 +72,7 @@ impl ExplicitSettings {
             prediction_level: settings.get_usize("time_step_prediction_level")?,
             refresh: settings.get_usize("delta_time_refresh")?.max(1),
             max_delta_time: settings.get_f64("max_delta_time")?,
+            mass_scaling_step: settings.get_f64("mass_scaling_time_step")?,
             rayleigh: [settings.get_f64("rayleigh_alpha")?, settings.get_f64("rayleigh_beta")?],
             follow_prescribed: settings.get_bool("follow_prescribed_motion")?,
             compute_reactions: settings.get_bool("compute_reactions")?,
@@ -78,8 +87,17 @@ pub struct ExplicitStrategy {
     settings: ExplicitSettings,
     scheme: CentralDifferences,
     assembler: Assembler,
-    /// Lumped mass of each unknown.
+    /// Lumped mass of each unknown, with the added one.
     mass: Vec<f64>,
+    /// Mass added to elements, once there is any.
+    scaling: Option<MassScaling>,
+    /// Whether the masses of the nodes are still to be written.
+    writes_masses: bool,
+    energy: ExplicitEnergy,
+    /// Balance of the step that has just been made.
+    balance: Option<Balance>,
+    /// Numbers chosen for the run that have not been asked for.
+    numbers: Vec<(&'static str, f64)>,
     /// The predicted step and the steps made since.
     predicted: Option<(f64, usize)>,
     warned: bool,
@@ -93,6 +111,8 @@ struct ExplicitState {
     assembler: AssemblerState,
     predicted: Option<(f64, usize)>,
     warned: bool,
+    scaling: Option<MassScaling>,
+    energy: ExplicitEnergy,
 }
 
 stored_as_bytes!(ExplicitState);
@@ -101,6 +121,8 @@ stored_as_bytes!(ExplicitState);
 impl State for ExplicitState {
     fn remap(&mut self, mapper: &mut dyn StateMapper) {
         self.assembler.remap(mapper);
+        self.energy.remap(mapper);
+        self.scaling.iter_mut().for_each(|scaling| mapper.by_unknown(&mut scaling.added));
     }
 }
 
@@ -120,13 +142,9 @@ impl ExplicitStrategy {
         scheme.prepare(part);
         Rates::add(&mut part.nodes.history, &[OUT_OF_BALANCE]);
         let mass = assembler.lumped_mass(part, system)?;
+        write_masses(part, system, &mass);
         let mut worst: Option<(usize, f64)> = None;
         for (dof, &m) in system.dofs.dofs().iter().zip(&mass) {
-            if let Some(column) = dof.rates().and_then(|rates| rates.mass) {
-                part.nodes.values.add_named(column, 1);
-                let field = part.nodes.values.get_mut(column).expect("added above");
-                field.levels[0][dof.node as usize] = m;
-            }
             if worst.is_none_or(|(_, smallest)| m < smallest) {
                 worst = Some((part.nodes.ids[dof.node as usize], m));
             }
@@ -138,7 +156,20 @@ impl ExplicitStrategy {
                 "give a positive density, or elements whose lumped mass is positive (e.g. 2D4N instead of 2D8N)";
             return Err(Diagnostic::error("lumped-mass", fact).remedy(remedy).into());
         }
-        Ok(Self { settings, scheme, assembler, mass, predicted: None, warned: false, messages: Vec::new() })
+        Ok(Self {
+            settings,
+            scheme,
+            assembler,
+            mass,
+            scaling: None,
+            writes_masses: false,
+            energy: ExplicitEnergy::default(),
+            balance: None,
+            numbers: Vec::new(),
+            predicted: None,
+            warned: false,
+            messages: Vec::new(),
+        })
     }
 
     /// Estimates the longest stable step in the present state.
@@ -151,6 +182,29 @@ impl ExplicitStrategy {
         let rayleigh = strongest_damping(part, self.settings.rayleigh);
         let mass = self.assembler.equations().lump(&self.mass);
         Ok(critical_step(&self.assembler, &system.dofs, &mass, rayleigh))
+    }
+
+    /// Adds mass to elements whose critical step is too short for the step that the settings name, where the model does not reach it by
+    /// itself. Collective.
+    fn scale_mass(&mut self, part: &mut ModelPart, system: &System) -> Result<()> {
+        let critical = self.settings.mass_scaling_step / SAFETY;
+        let rayleigh = strongest_damping(part, self.settings.rayleigh);
+        let (scaling, said) = if self.critical_step(part, system)? < critical {
+            MassScaling::of(part, system, &self.assembler, &self.mass, critical, rayleigh)?
+        } else {
+            (MassScaling::none(self.mass.len()), None)
+        };
+        self.messages.extend(said);
+        self.numbers.push(("added mass by mass", scaling.share));
+        self.numbers.push(("largest added mass by mass of a body", scaling.largest_of_body));
+        self.add_mass(&scaling.added);
+        self.scaling = Some(scaling);
+        Ok(())
+    }
+
+    fn add_mass(&mut self, added: &[f64]) {
+        self.mass.iter_mut().zip(added).for_each(|(mass, added)| *mass += added);
+        self.writes_masses = true;
     }
 
     fn advance(&mut self, part: &mut ModelPart, system: &mut System) -> Result<(Vec<IterationRecord>, Option<String>)> {
@@ -169,12 +223,14 @@ impl ExplicitStrategy {
         }
         self.assembler.begin_step(part, system)?;
         let damping = self.damping(part, system);
-        let residual = self.assembler.residual(part, system, damping.as_ref())?;
+        let (residual, kinds) = self.assembler.residual_by_kind(part, system, damping.as_ref())?;
+        let interactions = InteractionEnergies::of(part, system);
         let equations = self.assembler.equations();
         let force = equations.reduce(&residual);
         let mass = equations.lump(&self.mass);
         let acceleration = equations.expand(&force.iter().zip(&mass).map(|(f, m)| f / m).collect::<Vec<f64>>());
         let start = self.assembler.values(part, system);
+        let half = self.scheme.half_before().unwrap_or(0.5 * part.info.delta_time);
         let moved = (0..targets.len()).find(|&n| equations.is_fixed(n) && targets[n] != start[n]);
         let target = |n: usize| {
             let follow = self.settings.follow_prescribed;
@@ -184,6 +240,11 @@ impl ExplicitStrategy {
         if !part.constraints.is_empty() {
             impose_constraints(part);
         }
+        let increment =
+            self.assembler.values(part, system).iter().zip(&start).map(|(now, before)| now - before).collect();
+        let motion = ExplicitMotion { kinds: &kinds, residual: &residual, mass: &self.mass, increment, half };
+        let (balance, finding) = self.energy.balance(part, system, &self.assembler, motion, interactions);
+        self.balance = Some(balance);
         self.write_residual(part, system, &residual);
         if self.settings.compute_reactions {
             let unbalanced = self.unbalanced(part, system, &residual);
@@ -196,8 +257,26 @@ impl ExplicitStrategy {
         if !self.settings.follow_prescribed && !self.warned {
             self.warn_of_motion(part, system, moved);
         }
+        match finding {
+            Some(EnergyFinding::BlownUp(why)) => return Ok((Vec::new(), Some(why))),
+            Some(EnergyFinding::Warning(warning)) => self.messages.push(warning),
+            None => {}
+        }
         let broken = self.assembler.values(part, system).iter().position(|v| !v.is_finite());
         Ok((Vec::new(), part.ranks.first_to_say(broken.map(|number| self.explain(part, system, number)))))
+    }
+
+    /// Warns where mass scaling does not give the step it is for.
+    fn warn_of_short_step(&mut self, longest: f64) {
+        let wanted = self.settings.mass_scaling_step;
+        if longest < (1.0 - SAME) * wanted {
+            let fact = format!(
+                "with the mass added, steps of {longest:.3e} are safe, shorter than the {wanted:.3e} it is for"
+            );
+            let remedy = "stiffness without mass, as of springs, or stiffness that has grown since the start limits the step: give springs \
+                          masses, or lower \"mass_scaling_time_step\"";
+            self.messages.push(Diagnostic::warning("mass-scaling-step", fact).remedy(remedy));
+        }
     }
 
     /// Puts prescribed unknowns back to where they are now: forces are those of the step's start.
@@ -250,6 +329,17 @@ impl ExplicitStrategy {
     }
 }
 
+/// Writes the lumped masses of unknowns to the nodes.
+fn write_masses(part: &mut ModelPart, system: &System, mass: &[f64]) {
+    for (dof, &m) in system.dofs.dofs().iter().zip(mass) {
+        if let Some(column) = dof.rates().and_then(|rates| rates.mass) {
+            part.nodes.values.add_named(column, 1);
+            let field = part.nodes.values.get_mut(column).expect("added above");
+            field.levels[0][dof.node as usize] = m;
+        }
+    }
+}
+
 /// # Errors
 /// Unknowns that central differences cannot move.
 fn only_with_mass(system: &System) -> Result<()> {
@@ -268,6 +358,12 @@ fn only_with_mass(system: &System) -> Result<()> {
 
 impl SolutionStrategy for ExplicitStrategy {
     fn step_length(&mut self, part: &mut ModelPart, system: &System, asked: f64) -> Result<f64> {
+        if self.settings.mass_scaling_step > 0.0 && self.scaling.is_none() {
+            self.scale_mass(part, system)?;
+        }
+        if std::mem::take(&mut self.writes_masses) {
+            write_masses(part, system, &self.mass);
+        }
         let stale = match self.predicted {
             None => true,
             Some((_, steps)) => self.settings.prediction_level > 1 && steps >= self.settings.refresh,
@@ -281,7 +377,12 @@ impl SolutionStrategy for ExplicitStrategy {
                               \"time_step_prediction_level\": 1 choose it";
                 self.messages.push(Diagnostic::warning("critical-step", fact).remedy(remedy));
             }
-            self.predicted = Some(((SAFETY * critical).min(self.settings.max_delta_time), 0));
+            let mut longest = self.settings.max_delta_time;
+            if self.settings.mass_scaling_step > 0.0 {
+                longest = longest.min(self.settings.mass_scaling_step);
+                self.warn_of_short_step(SAFETY * critical);
+            }
+            self.predicted = Some(((SAFETY * critical).min(longest), 0));
         }
         let mut length = asked;
         if let Some((predicted, steps)) = &mut self.predicted {
@@ -292,6 +393,10 @@ impl SolutionStrategy for ExplicitStrategy {
         }
         let factors = system.interactions.iter().map(|interaction| interaction.step_factor(part));
         Ok(length * factors.fold(1.0, f64::min))
+    }
+
+    fn chosen_numbers(&mut self) -> Vec<(&'static str, f64)> {
+        std::mem::take(&mut self.numbers)
     }
 
     fn messages(&mut self) -> Vec<Diagnostic> {
@@ -316,7 +421,8 @@ impl SolutionStrategy for ExplicitStrategy {
         system: &mut System,
         _monitor: &mut dyn Monitor,
     ) -> Result<StepRecord> {
-        recorded(part, system, |part, system| self.advance(part, system))
+        let record = recorded(part, system, |part, system| self.advance(part, system))?;
+        Ok(StepRecord { balance: self.balance.take(), ..record })
     }
 
     fn finalize_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()> {
@@ -328,17 +434,31 @@ impl SolutionStrategy for ExplicitStrategy {
     }
 
     fn state(&self) -> Option<Box<dyn State>> {
-        let (scheme, assembler) = (self.scheme, self.assembler.state());
-        Some(Box::new(ExplicitState { scheme, assembler, predicted: self.predicted, warned: self.warned }))
+        Some(Box::new(ExplicitState {
+            scheme: self.scheme,
+            assembler: self.assembler.state(),
+            predicted: self.predicted,
+            warned: self.warned,
+            scaling: self.scaling.clone(),
+            energy: self.energy.clone(),
+        }))
     }
 
     fn resume(&mut self, part: &ModelPart, system: &System, state: Box<dyn State>) -> Result<()> {
-        let ExplicitState { scheme, assembler, predicted, warned } = state.take()?;
+        let ExplicitState { scheme, assembler, predicted, warned, scaling, energy } = state.take()?;
         self.assembler.resume(part, system, assembler)?;
         if predicted.is_some_and(|(length, _)| !(length > 0.0 && length.is_finite())) {
             return Err(unfit("the step it has predicted is none"));
         }
+        let unknowns = system.dofs.len();
+        if !energy.is_of(unknowns) || scaling.as_ref().is_some_and(|scaling| scaling.added.len() != unknowns) {
+            return Err(unfit("the motion and the masses it remembers are not those of its unknowns"));
+        }
+        if let Some(scaling) = &scaling {
+            self.add_mass(&scaling.added);
+        }
         (self.scheme, self.predicted, self.warned) = (scheme, predicted, warned);
+        (self.scaling, self.energy) = (scaling, energy);
         Ok(())
     }
 }

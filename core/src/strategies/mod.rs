@@ -4,7 +4,6 @@
 //! [`NewtonRaphson`] iterates, [`ExplicitStrategy`] does without. The active set of contact is a stage of each iteration, see
 //! [`crate::entities::ActiveSet::after_update`].
 
-mod energy_balance;
 mod arc_length;
 mod balance;
 mod body_balance;
@@ -17,7 +16,9 @@ mod convergence_rate;
 mod criterion;
 mod critical_step;
 mod displacement_criterion;
+mod energy_balance;
 mod explicit;
+mod explicit_energy;
 mod local_to_global;
 mod distributed_rows;
 mod root_gather;
@@ -27,6 +28,7 @@ mod line_search;
 mod linear_solve;
 mod linear_solvers;
 mod dof_name;
+mod mass_scaling;
 mod measure;
 mod memory;
 mod newton;

@@ -3,16 +3,16 @@
 use serde::ser::{Error, Serialize, Serializer};
 use serde_json::Value;
 
-/// Serde's traits for a type with the attribute `#[serde(remote = "Self")]`: JSON leaves out the field where it is nothing.
+/// Serde's traits for a type with the attribute `#[serde(remote = "Self")]`: JSON leaves out these fields where they are nothing.
 macro_rules! omitted_from_json {
-    ($type:ty, $field:literal) => {
+    ($type:ty, $($field:literal),+) => {
         impl ::serde::Serialize for $type {
             fn serialize<S: ::serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
                 if !serializer.is_human_readable() {
                     return <$type>::serialize(self, serializer);
                 }
                 let json = <$type>::serialize(self, ::serde_json::value::Serializer);
-                $crate::strategies::omitted_fields::write_without(json, $field, serializer)
+                $crate::strategies::omitted_fields::write_without(json, &[$($field),+], serializer)
             }
         }
 
@@ -26,15 +26,15 @@ macro_rules! omitted_from_json {
 
 pub(super) use omitted_from_json;
 
-/// Writes an object, without the field where that is nothing.
+/// Writes an object, without those of the fields that are nothing.
 pub(super) fn write_without<S: Serializer>(
     json: serde_json::Result<Value>,
-    field: &str,
+    fields: &[&str],
     serializer: S,
 ) -> Result<S::Ok, S::Error> {
     let mut json = json.map_err(S::Error::custom)?;
-    if let Some(fields) = json.as_object_mut().filter(|fields| fields.get(field).is_some_and(Value::is_null)) {
-        fields.shift_remove(field);
+    if let Some(all) = json.as_object_mut() {
+        all.retain(|name, value| !(value.is_null() && fields.contains(&name.as_str())));
     }
     json.serialize(serializer)
 }

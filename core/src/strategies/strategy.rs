@@ -59,6 +59,11 @@ pub trait SolutionStrategy: Send {
     /// An entity that cannot be computed.
     fn finalize_step(&mut self, part: &mut ModelPart, system: &mut System) -> Result<()>;
 
+    /// Numbers chosen for the run since they were last asked for, by name: kept in its report.
+    fn chosen_numbers(&mut self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+
     /// Notes and warnings since they were last asked for; the stage passes them on.
     fn messages(&mut self) -> Vec<Diagnostic> {
         Vec::new()

@@ -22,8 +22,8 @@ use crate::friction;
 use crate::friction::slip;
 use crate::interface::{Bodies, SlaveIndex, check_nodes, find_nodal_h};
 use crate::kratos::FirstIterateTangent;
-use crate::law::{NodeState, StepParameters};
-use crate::results::{heat, joins, pair_states, write_forces};
+use crate::law::{Multiplier, NodeState, StepParameters};
+use crate::results::{heat, inelastic_heat, joins, pair_states, spring_energy, write_forces};
 use crate::safeguards::{FreeBodies, InterfacesInContact, SHORTER, near_nodes, too_deep};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::SlaveState;
@@ -186,11 +186,12 @@ impl Interaction for ContactInteraction {
         self.contact.join_interfaces(part)?;
         if self.acting {
             let settings = &self.contact.setup.settings;
-            if let Some(explicit) = settings.explicit {
+            if part.info.solver.explicit {
                 let (given, weighted) = (settings.given.penalty.is_some(), settings.weighted_penalty);
                 let revolution = self.contact.setup.parameters.segmentation.revolution();
                 let (states, interfaces) = (&mut self.contact.states, &self.contact.pairing.interfaces);
-                let (most, factor) = (1.0 + explicit.most, settings.solver.delta_time_factor);
+                let (most, factor) =
+                    (1.0 + settings.explicit.map_or(0.0, |explicit| explicit.most), settings.solver.delta_time_factor);
                 let said =
                     self.stable_penalty.begin_step(part, states, interfaces, revolution, most, given, weighted, factor);
                 self.contact.messages.extend(said);
@@ -205,7 +206,7 @@ impl Interaction for ContactInteraction {
     }
 
     fn finalize_step(&mut self, part: &mut ModelPart) -> Result<()> {
-        if self.acting && self.contact.setup.settings.explicit.is_some() {
+        if self.acting && part.info.solver.explicit {
             self.explicit_depth(part)?;
         }
         self.contact.states.release_failed();
@@ -293,18 +294,28 @@ impl Interaction for ContactInteraction {
 
     fn pairs(&self, part: &ModelPart) -> Vec<PairState> {
         let ContactState { setup: Setup { settings, parameters, tolerances, .. }, pairing, states, .. } = &self.contact;
-        let multiplier = settings.formulation.multiplier;
+        let formulation = settings.formulation;
+        let multiplier = formulation.multiplier;
+        let by_springs = matches!(multiplier, Multiplier::None) && !settings.weighted_penalty;
         let of_node = |slave: SlaveIndex, state: &SlaveState| {
             if let Some(bond) = states.bond(slave) {
                 return state.kinematics.area * bond.dissipated();
             }
-            let slides = state.contact() == NodeState::Slip;
             let slid = || slip(part, states, slave, multiplier, parameters);
+            if by_springs {
+                return inelastic_heat(state, slid(), parameters.tangent_factor);
+            }
+            let slides = state.contact() == NodeState::Slip;
             if slides { heat(state.law.traction, slid(), state.kinematics.area) } else { 0.0 }
         };
+        let spring = |state: &SlaveState| spring_energy(state, parameters.tangent_factor);
+        let soft = states.iter().any(|(_, state)| state.parameters.soft.is_some());
+        let has_springs =
+            (by_springs || formulation.regularised && !formulation.updated) && !soft && !states.has_bonds();
+        let spring: Option<&dyn Fn(&SlaveState) -> f64> = if has_springs { Some(&spring) } else { None };
         let (parts, frictional) = ((&settings.parts, &settings.slaves), settings.formulation.frictional());
         let slaves = pairing.slaves_by_interface();
-        pair_states(&pairing.interfaces, parts, (states, &slaves), frictional, tolerances.length, of_node)
+        pair_states(&pairing.interfaces, parts, (states, &slaves), frictional, tolerances.length, of_node, spring)
     }
 
     fn node_state(&self, node: u32) -> Option<&'static str> {

@@ -458,8 +458,15 @@ impl Interaction for MpcInteraction {
             norm(state.kinematics.weighted_slip) * bound
         };
         let (holds, least) = (friction || self.settings.ties(), length_tolerance(part, &self.states.mesh_nodes()));
-        let mut out =
-            pair_states(&self.interfaces, parts, (&self.states, &self.slaves_by_interface()), holds, least, of_node);
+        let mut out = pair_states(
+            &self.interfaces,
+            parts,
+            (&self.states, &self.slaves_by_interface()),
+            holds,
+            least,
+            of_node,
+            None,
+        );
         for (interface, pair) in self.interfaces.iter().zip(&mut out) {
             let held = interface
                 .nodes_of(Roles::Slave)

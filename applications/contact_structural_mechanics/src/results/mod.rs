@@ -6,4 +6,4 @@ mod pair_states;
 
 pub(crate) use interface_surfaces::{InterfaceSurfaces, TiedColumns};
 pub(crate) use nodal_results::{write_forces, write_masters, write_states};
-pub(crate) use pair_states::{PartsOfPairs, heat, joins, name, pair_states};
+pub(crate) use pair_states::{PartsOfPairs, heat, inelastic_heat, joins, name, pair_states, spring_energy};

@@ -228,6 +228,8 @@ impl Stage {
             return Ok(false);
         }
         let length = self.strategy.step_length(part, &self.system, self.schedule.stepping.next(time)?)?;
+        let chosen = self.strategy.chosen_numbers();
+        run.report.parameters.extend(chosen.into_iter().map(|(name, value)| (name.to_owned(), value)));
         let (target, is_shortened) = self.schedule.stepping.target(time, length, self.schedule.interval());
         if is_shortened {
             run.monitor.note(&format!(

@@ -200,7 +200,7 @@ impl InertiaMatrices {
 }
 
 /// The nodes at their initial positions: mass does not change with the motion.
-fn undeformed(part: &ModelPart) -> Nodes {
+pub(super) fn undeformed(part: &ModelPart) -> Nodes {
     let mut nodes = part.nodes.clone();
     nodes.current.clone_from(&nodes.initial);
     nodes

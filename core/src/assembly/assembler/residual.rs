@@ -141,7 +141,12 @@ impl Assembler {
     }
 
     /// Inertia and damping of this rank's entities, over all unknowns.
-    fn own_inertia_forces(&mut self, part: &ModelPart, system: &System, inertia: &Inertia) -> Result<Vec<f64>> {
+    pub(super) fn own_inertia_forces(
+        &mut self,
+        part: &ModelPart,
+        system: &System,
+        inertia: &Inertia,
+    ) -> Result<Vec<f64>> {
         self.ensure_constant(part, system)?;
         self.inertia.forces(&self.bulk, part, system, inertia, |number| self.parallel.counts(number))
     }
