@@ -1,12 +1,17 @@
 //! Bonds between surfaces: the law of a block that is pulled off, and specimens of fracture mechanics.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde_json::{Map, Value, json};
+use tempfile::TempDir;
+use zelus::core::communication::Ranks;
+use zelus::{RunOptions, Silent, Simulation};
 
 use crate::blocks::Vec3;
 use crate::scene::{Kind, Scene, held};
 use crate::support::{Results, read_json, said, zelus};
+use crate::thread_ranks::on_threads;
 
 const DECK: &str = "ProjectParameters.json";
 const KIND: Kind = ("PenaltyContactFrictional", "Frictional");
@@ -59,13 +64,25 @@ struct Pulled {
 
 const PULLED: Pulled =
     Pulled { space: 2, turn: 0.0, swapped: false, unit: 1.0, second_order: false, steps: 24, extra: "{}" };
+/// Friction by direction, for bonds: their own stiffness is that of contact.
+const DIRECTED: &str = r#"{"friction_direction": [3.0, 0.0, 0.0], "friction_ratio": 0.5}"#;
 /// Area of the lower face of the block.
 const AREA: f64 = 2.0;
 
+/// The deck of a pulled block.
+struct PulledDeck {
+    folder: TempDir,
+    /// Tangential and normal direction of its path.
+    axes: [Vec3; 2],
+    /// Nodes of the block, the first ones.
+    of_block: u64,
+    /// Nodes of the slave side.
+    slaves: Vec<usize>,
+}
+
 impl Pulled {
-    /// Runs the block along a path, tangential and normal, each a function of the time; gives force of the block by step along these
-    /// directions, its damage, the energy that the pair has dissipated, and the force across.
-    fn run(&self, law: &Value, friction: f64, path: [&str; 2]) -> Result<Vec<[f64; 5]>, String> {
+    /// Writes the deck of the block on a path, tangential and normal, each a function of the time.
+    fn deck(&self, law: &Value, friction: f64, path: [&str; 2]) -> PulledDeck {
         let (space, up) = (self.space, self.space - 1);
         let mut scene = Scene::new(space);
         (scene.kind, scene.steps) = (KIND, self.steps);
@@ -101,13 +118,21 @@ impl Pulled {
             let parameters = deck["processes"]["contact_process_list"][0]["Parameters"].as_object_mut().expect("keys");
             parameters.extend(extra.as_object().expect("keys").clone());
         });
+        let slaves = if self.swapped { &floor[&(up, 1)].0 } else { &block[&(up, 0)].0 };
+        PulledDeck { folder, axes: [along, normal], of_block, slaves: slaves.clone() }
+    }
+
+    /// Runs the block along a path; gives its force by step along the directions of the path, its damage, the energy that the pair has
+    /// dissipated, and the force across.
+    fn run(&self, law: &Value, friction: f64, path: [&str; 2]) -> Result<Vec<[f64; 5]>, String> {
+        let PulledDeck { folder, axes: [along, normal], of_block, slaves } = self.deck(law, friction, path);
+        let space = self.space;
         let output = zelus(folder.path(), &["run", DECK, "--threads", "1", "--report", "run.json"]);
         if !output.status.success() {
             return Err(said(&output));
         }
         let report = read_json(&folder.path().join("run.json")).expect("a report");
         let results = Results::read(&folder.path().join("results.json")).expect("results");
-        let slaves = if self.swapped { &floor[&(up, 1)].0 } else { &block[&(up, 0)].0 };
         let step = |at: usize| {
             let force: Vec<f64> = (0..space)
                 .map(|c| {
@@ -245,8 +270,9 @@ const HEIGHT: f64 = 2.0;
 /// Facets of the lips of a crack that touch.
 const LIP: usize = 3;
 
-/// Deflection and force of a specimen by step: arms of this length, joined from `crack` on, in elements of second order of length 1.
-fn bent(specimen: Specimen, length: f64, crack: f64, deflection: f64, steps: usize) -> Vec<[f64; 2]> {
+/// Writes the deck of a specimen: arms of this length, joined from `crack` on, in elements of second order of length 1. Gives the node
+/// that is moved.
+fn specimen(specimen: Specimen, length: f64, crack: f64, deflection: f64, steps: usize) -> (TempDir, usize) {
     let mut scene = Scene::new(2);
     (scene.kind, scene.steps, scene.young, scene.poisson) = (KIND, steps, YOUNG, 0.0);
     let divisions = [length as usize, 2, 1];
@@ -303,13 +329,19 @@ fn bent(specimen: Specimen, length: f64, crack: f64, deflection: f64, steps: usi
         settings["contact_settings"]["contact_residual_relative_tolerance"] = json!(1e-6);
         deck["processes"]["contact_process_list"][0]["Parameters"]["cohesive_pairs"] = json!(["0"]);
     });
+    (folder, measured)
+}
+
+/// Deflection and force of a [`specimen`] by step.
+fn bent(kind: Specimen, length: f64, crack: f64, deflection: f64, steps: usize) -> Vec<[f64; 2]> {
+    let (folder, measured) = specimen(kind, length, crack, deflection, steps);
     let output = zelus(folder.path(), &["run", DECK, "--threads", "1", "-q"]);
     assert!(output.status.success(), "{}", said(&output));
     let results = Results::read(&folder.path().join("results.json")).expect("results");
-    let sign = if specimen == Specimen::Cantilevers { 1.0 } else { -1.0 };
+    let sign = if kind == Specimen::Cantilevers { 1.0 } else { -1.0 };
     let of = |step: usize| {
         let number = |quantity: &str| results.nodal(quantity, step)[&(measured as u64)];
-        let moved = if specimen == Specimen::Cantilevers { 2.0 } else { 1.0 };
+        let moved = if kind == Specimen::Cantilevers { 2.0 } else { 1.0 };
         [sign * moved * number("DISPLACEMENT_Y"), sign * number("REACTION_Y")]
     };
     (0..results.len()).map(of).collect()
@@ -358,6 +390,82 @@ fn end_notched_flexure_follows_fracture_mechanics() {
     };
     let found = bent(Specimen::Flexure, 2.0 * half, 75.0, 9.0, 30);
     assert!(compare(&found, &curve, [84.0, 97.0], "ENF") > 2);
+}
+
+/// Decks whose bonds fail while the run lasts: a specimen, and a block that is torn off while it is dragged, then pressed, with friction that
+/// depends on the direction in space.
+fn failing() -> Vec<(&'static str, TempDir)> {
+    let way = "0.05*t";
+    let lift = "0.004*t if t < 0.4 else 0.0056 - 0.01*t";
+    let directed = Pulled { space: 3, turn: 0.4, steps: 12, extra: DIRECTED, ..PULLED };
+    vec![
+        ("cantilevers", specimen(Specimen::Cantilevers, 60.0, 30.0, 1.8, 12).0),
+        ("block", Pulled { steps: 12, ..PULLED }.deck(&bilinear(1.0), 0.3, [way, lift]).folder),
+        ("block in space", directed.deck(&bilinear(1.0), 0.3, [way, lift]).folder),
+    ]
+}
+
+/// Changes the deck of a folder.
+fn change_deck(folder: &Path, change: impl Fn(&mut Value)) {
+    let mut deck = read_json(&folder.join(DECK)).expect("the deck");
+    change(&mut deck);
+    std::fs::write(folder.join(DECK), deck.to_string()).expect("the deck");
+}
+
+/// A run that goes on from a saved step in the middle of the failure writes the same bits as the whole run.
+#[test]
+fn a_restart_keeps_the_damage_of_bonds() {
+    for (what, folder) in failing() {
+        let folder = folder.path();
+        change_deck(folder, |deck| {
+            // Of 12 steps the seventh alone is saved.
+            let saved =
+                json!({"model_part_name": "Structure", "restart_control_type": "step", "restart_save_frequency": 7});
+            deck["output_processes"] =
+                json!({"saved": [{"python_module": "save_restart_process", "Parameters": saved}]});
+        });
+        let output = zelus(folder, &["run", DECK, "--threads", "1"]);
+        assert!(output.status.success(), "{what}: {}", said(&output));
+        let whole = std::fs::read(folder.join("results.json")).expect("results");
+        let results = Results::read(&folder.join("results.json")).expect("results");
+        let damage = |step: usize| results.nodal("COHESIVE_DAMAGE", step).into_values().sum::<f64>();
+        assert!(damage(0) < damage(6) && damage(6) < damage(11), "{what}: nothing fails on both sides of the restart");
+        let output = zelus(folder, &["run", DECK, "--resume", "--threads", "1"]);
+        assert!(output.status.success(), "{what}: {}", said(&output));
+        assert!(said(&output).contains("step 8,") && !said(&output).contains("step 7,"), "{what}: {}", said(&output));
+        assert!(std::fs::read(folder.join("results.json")).expect("results") == whole, "{what}: other results");
+    }
+}
+
+/// Two and three ranks give the displacements of one, and take the same iterations; round-off, which softening enlarges.
+#[test]
+fn bonds_over_ranks_are_those_of_one() {
+    for (what, folder) in failing() {
+        let run = |ranks: Ranks| {
+            let options = RunOptions { threads: Some(1), ranks, ..RunOptions::default() };
+            let mut simulation = Simulation::open(&folder.path().join(DECK), &options).expect("a deck");
+            simulation.run(&mut Silent).expect("it converges");
+            let displacement = simulation.field("DISPLACEMENT").expect("a field");
+            let ids = &simulation.part().expect("a part").nodes.ids;
+            let by_node: BTreeMap<usize, Vec3> =
+                ids.iter().copied().zip(displacement.as_chunks().0.iter().copied()).collect();
+            (by_node, simulation.records().iter().map(|step| step.iterations.len()).collect::<Vec<_>>())
+        };
+        let (whole, iterations) = run(Ranks::default());
+        let largest = whole.values().flatten().fold(0.0_f64, |most, u| most.max(u.abs()));
+        for count in [2, 3] {
+            let of_ranks = on_threads(count, run);
+            let nodes: usize = of_ranks.iter().map(|(found, _)| found.len()).sum();
+            assert!(nodes < count * whole.len(), "{what} on {count} ranks: nothing is shared out");
+            for (found, own) in of_ranks {
+                assert_eq!(own, iterations, "{what} on {count} ranks");
+                let difference =
+                    |(id, u): (&usize, &Vec3)| u.iter().zip(whole[id]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                let off = found.iter().map(difference).fold(0.0, f64::max) / largest;
+                assert!(off < 1e-10, "{what} on {count} ranks: off by {off:e}");
+            }
+        }
+    }
 }
 
 /// ANALYTIC: a block that is pressed and dragged at an angle to the axes of friction. The slip is normal to the elliptic limit, so that
