@@ -7,7 +7,8 @@ use zelus::contact_structural_mechanics::interface::{
     Bodies, Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles,
 };
 use zelus::contact_structural_mechanics::law::{
-    Augmentation, Margin, Multiplier, Nitsche, NitscheVariant, NormalVariation, SlipRule, StepParameters,
+    Augmentation, FrictionEllipse, Margin, Multiplier, Nitsche, NitscheVariant, NormalVariation, SlipRule,
+    StepParameters,
 };
 use zelus::contact_structural_mechanics::laws::friction::COULOMB;
 use zelus::contact_structural_mechanics::mortar::{IntegrationOrder, OperatorThreshold, SegmentationSettings};
@@ -148,6 +149,7 @@ impl Contact {
             regularised: false,
             dynamic: false,
             friction_law: &COULOMB,
+            ellipse: FrictionEllipse::default(),
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::new(variant, Some(2.0), None),
         });

@@ -431,6 +431,17 @@ fn blocks(width: f64, joint: Joint, slides: Value) -> Deck {
 
 /// Runs blocks with heat beside, contact by a formulation: the report, and heat at nodes; bottom and top are held at these temperatures.
 fn warm_blocks(blocks: &Deck, mortar: &str, strategy: &str, held: [f64; 2], laws: &Value) -> (Value, Results) {
+    warm_blocks_with(blocks, mortar, strategy, (held, laws), &|_| {})
+}
+
+/// As [`warm_blocks`], with changes of the folder.
+fn warm_blocks_with(
+    blocks: &Deck,
+    mortar: &str,
+    strategy: &str,
+    (held, laws): ([f64; 2], &Value),
+    change: &dyn Fn(&Path),
+) -> (Value, Results) {
     let scratch = tempfile::tempdir().expect("a scratch folder");
     blocks.write(scratch.path(), |deck| {
         let mut structure = deck["solver_settings"].take();
@@ -463,6 +474,7 @@ fn warm_blocks(blocks: &Deck, mortar: &str, strategy: &str, held: [f64; 2], laws
     };
     let materials = json!({"properties": [of("Lower", 1), of("Upper", 2)]});
     std::fs::write(scratch.path().join("heat.json"), materials.to_string()).expect("a file");
+    change(scratch.path());
     let output = zelus(scratch.path(), &["run", "ProjectParameters.json", "--report", "report.json"]);
     assert!(output.status.success(), "{mortar}: {}", said(&output));
     let results = Results::read(&scratch.path().join("heat_results.json")).expect("results");
@@ -526,6 +538,47 @@ fn friction_heats_both_bodies() {
                 };
                 let last = sum(step) - sum(step - 1);
                 assert!((last - heat * 0.1).abs() < 1e-9 * last, "{mortar}, step {step}: {last} {heat}");
+            }
+        }
+    }
+}
+
+/// ANALYTIC: friction that heats two blocks softens by that heat. Half of q = f μ p v leaves by each block of length L, so that the
+/// surfaces have T = q L/(2 k), and with μ = μ₀ (1 − T/T_m) the heat is q = q₀/(1 + q₀ L/(2 k T_m)), q₀ = f μ₀ p v. 5e-3: friction
+/// tilts the lower block, so that pressure and heat are not quite uniform; softening takes 11 %.
+#[test]
+fn friction_softens_by_its_own_heat() {
+    let (friction, speed, factor, melting) = (0.3, 2e-3, 1e3, 1.0);
+    let laws = json!([{"law": "constant", "conductance": 20.0}]);
+    for mortar in ["ALMContactFrictional", "PenaltyContactFrictional"] {
+        for strategy in ["staggered", "monolithic"] {
+            let blocks = blocks(1.0, Joint::Frictional(friction), json!(format!("{speed}*t")));
+            let soften = |folder: &Path| {
+                let edit = |file: &str, change: &dyn Fn(&mut Value)| {
+                    let mut value = read_json(&folder.join(file)).expect("it was written");
+                    change(&mut value);
+                    std::fs::write(folder.join(file), value.to_string()).expect("a file");
+                };
+                edit("ProjectParameters.json", &|deck| {
+                    deck["processes"]["contact_process_list"][0]["Parameters"]["frictional_law"] =
+                        json!("ThermalSoftening");
+                    deck["processes"]["heat"][2]["Parameters"]["friction_heat"] = json!(factor);
+                });
+                edit("StructuralMaterials.json", &|materials| {
+                    for material in materials["properties"].as_array_mut().expect("materials") {
+                        let variables = &mut material["Material"]["Variables"];
+                        variables["FRICTION_SOFTENING_EXPONENT"] = json!(1.0);
+                        variables["FRICTION_REFERENCE_TEMPERATURE"] = json!(0.0);
+                        variables["FRICTION_MELTING_TEMPERATURE"] = json!(melting);
+                    }
+                });
+            };
+            let (report, results) = warm_blocks_with(&blocks, mortar, strategy, ([0.0; 2], &laws), &soften);
+            let cold = factor * friction * blocks.pressure * speed;
+            let exact = cold / (1.0 + cold * 0.5 / 5.0 / melting);
+            for step in 5..results.len() {
+                let heat = number(&report, step, "heat_of_friction");
+                assert!((heat - exact).abs() < 5e-3 * exact, "{mortar}, {strategy}, step {step}: {heat} {exact}");
             }
         }
     }

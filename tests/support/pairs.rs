@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use zelus::contact_structural_mechanics::flags::SLIP;
 use zelus::contact_structural_mechanics::law::{
-    Augmentation, Margin, Nitsche, NormalVariation, SlipRule, StepParameters,
+    Augmentation, FrictionEllipse, Margin, Nitsche, NormalVariation, SlipRule, StepParameters,
 };
 use zelus::contact_structural_mechanics::laws::friction::COULOMB;
 use zelus::contact_structural_mechanics::mortar::{
@@ -202,6 +202,7 @@ impl Setting {
             regularised: formulation.regularised,
             dynamic: false,
             friction_law: &COULOMB,
+            ellipse: FrictionEllipse::default(),
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::default(),
         };

@@ -9,6 +9,7 @@ register_usual_results! {
 }
 
 register_material_range! { "[0, inf)": ["KINETIC_FRICTION_COEFFICIENT", "FRICTION_DECAY"] }
+register_material_range! { "(0, inf)": ["FRICTION_SOFTENING_EXPONENT"] }
 
 register_variable! {
     pub LAGRANGE_MULTIPLIER_CONTACT_PRESSURE: f64 = "Normal contact pressure divided by SCALE_FACTOR, negative in compression.";
@@ -31,8 +32,11 @@ register_variable! {
     pub FRICTION_COEFFICIENT: f64 = "Coulomb's coefficient of friction.";
     pub KINETIC_FRICTION_COEFFICIENT: f64 = "Coefficient of friction at high sliding speeds.";
     pub FRICTION_DECAY: f64 = "Decay of friction with the sliding speed (time per length).";
+    pub FRICTION_SOFTENING_EXPONENT: f64 = "Exponent by which friction falls with the temperature.";
+    pub FRICTION_REFERENCE_TEMPERATURE: f64 = "Temperature above which friction falls.";
+    pub FRICTION_MELTING_TEMPERATURE: f64 = "Temperature from which there is no friction.";
     pub TRESCA_FRICTION_THRESHOLD: f64 = "Tresca's limit of the tangential traction (force per area).";
-    pub TANGENT_XI: [f64; 3] = "Unit tangent of the slave surface in the direction of sliding.";
+    pub TANGENT_XI: [f64; 3] = "Unit tangent of the slave surface in the direction of sliding; of friction by direction in the plane in which its limit is a circle.";
     pub TANGENT_ETA: [f64; 3] = "Unit tangent of the slave surface across the direction of sliding: TANGENT_XI, TANGENT_ETA and the normal are right-handed.";
     pub AUGMENTED_NORMAL_CONTACT_PRESSURE: f64 = "Normal traction of a slave node, negative in contact: scale factor times normal multiplier, plus penalty times weighted gap where pairs augment; of penalty methods their traction.";
     pub AUGMENTED_TANGENT_CONTACT_PRESSURE: [f64; 3] = "Augmented tangential traction that friction limits.";

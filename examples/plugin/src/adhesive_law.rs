@@ -3,6 +3,7 @@
 //! |t| ≤ c − μ p with c = ADHESION (force per area) and μ = 0.2; the pressure p is negative in compression.
 
 use zelus::contact_structural_mechanics::law::{Bound, FrictionLaw, FrictionLawEntry};
+use zelus::contact_structural_mechanics::laws::friction::COULOMB;
 use zelus_core::{register, register_variable};
 
 register_variable! {
@@ -14,9 +15,8 @@ register! { FrictionLawEntry "Adhesive",
     source: "|t| ≤ c − μ p",
     build: FrictionLaw {
         strengths: &[&ADHESION],
-        constants: &[],
         bound: |numbers, _| Bound { coefficient: 0.2, threshold: numbers[0] },
-        depends_on_sliding: false,
         by_coefficients: false,
+        ..COULOMB
     },
 }

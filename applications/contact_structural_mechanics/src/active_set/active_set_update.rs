@@ -80,6 +80,15 @@ impl ActiveSetUpdate {
         change
     }
 
+    /// Before an iteration: friction follows the temperature, which may have changed since the last one, and bonds follow the motion.
+    pub(crate) fn follow(&self, part: &ModelPart, states: &mut SlaveStates, setup: &Setup) {
+        if setup.has_warm_friction() {
+            Rules::of(setup).follow(part, states, setup);
+        } else {
+            setup.find_bonds(states);
+        }
+    }
+
     /// Finds pressures and tractions in the present state, and holds the set.
     pub(crate) fn find_tractions(&self, part: &ModelPart, states: &mut SlaveStates, setup: &Setup) {
         let rules = Rules::of(setup);

@@ -38,7 +38,7 @@ impl<'a> Rules<'a> {
         Self { formulation: setup.settings.formulation, parameters: &setup.parameters, tolerances: setup.tolerances }
     }
 
-    /// Takes what laws of friction that depend on the sliding, and of soft contact and of bonds, say in the present state of every slave node.
+    /// Takes what laws of friction that depend on the sliding or the temperature, and of soft contact and of bonds, say in the present state of every slave node.
     pub(super) fn follow(self, part: &ModelPart, states: &mut SlaveStates, setup: &Setup) {
         let friction = Some(self.parameters.friction_law);
         let friction = friction.filter(|law| law.depends_on_sliding && self.formulation.frictional());
@@ -61,7 +61,9 @@ impl<'a> Rules<'a> {
         for (&slave, numbers) in slaves.iter().zip(&all) {
             let pressure = numbers.pressure().min(0.0);
             if let Some(law) = friction {
-                let sliding = Sliding { pressure, speed: norm(numbers.slip) / part.info.delta_time };
+                let (speed, temperature) =
+                    (norm(numbers.slip) / part.info.delta_time, states[slave].parameters.temperature);
+                let sliding = Sliding { pressure, speed, temperature };
                 let node = states.mesh_node(slave) as usize;
                 states[slave].parameters.friction = law.bound_at(&part.nodes, node, sliding);
             }
@@ -162,7 +164,8 @@ impl<'a> Rules<'a> {
             }
             let slides = decision.state == NodeState::Slip && was != NodeState::Slip;
             if slides && frictional && decision.traction != [0.0; 3] {
-                state.law.tangent = tangent(decision.traction, state.kinematics.normal, part.info.domain_size);
+                let traction = self.parameters.ellipse.inverse_root(decision.traction, state.kinematics.normal);
+                state.law.tangent = tangent(traction, state.kinematics.normal, part.info.domain_size);
             }
             if frictional {
                 state.law.traction = decision.traction;
@@ -267,6 +270,7 @@ impl<'a> Rules<'a> {
             driven,
             stays: state.stays(),
             friction: state.parameters.friction,
+            ellipse: parameters.ellipse,
             scale_factor: parameters.scale_factor,
             tangent_factor: parameters.tangent_factor,
             tolerances,

@@ -21,7 +21,7 @@ const LEAST_FREE: f64 = 1e-3;
 
 /// Finds the tangents of the slave nodes, and how they turn.
 ///
-/// The direction is that of the tangential multiplier of an active node. Where contact always slides it is that of the
+/// Directions are those in the plane in which the limit of friction is a circle. The direction is that of the tangential multiplier of an active node. Where contact always slides it is that of the
 /// weighted slip. For sliding nodes in space, whose direction is more than a sign, and without multipliers it is that of the
 /// trial traction. A node that has none of them above round-off keeps the direction it had: at step start that is a far
 /// better guess than any fixed tangent; so does one that always slides and turned back [`MOST_REVERSALS`] times in the step
@@ -43,6 +43,7 @@ pub(crate) fn find_tangents(
         let (contact, normal, before) = (state.contact(), state.kinematics.normal, state.law.tangent);
         let by_slip = || {
             let slip = tolerances.vector_of(slip(part, states, slave, formulation.multiplier, parameters));
+            let slip = parameters.ellipse.root(slip, normal);
             // Bodies that stand still keep the direction in which they came.
             let pressure = match formulation.multiplier {
                 Multiplier::Vector(_) => {
@@ -75,7 +76,8 @@ pub(crate) fn find_tangents(
                     // The multiplier of an iterate lags behind the normal, which may have turned by more than friction does.
                     NodeState::Slip if !pure && keeps_direction => [0.0; 3],
                     NodeState::Stick | NodeState::Slip if !pure => {
-                        decided(scale(tangential(multiplier, normal), parameters.scale_factor))
+                        let along = parameters.ellipse.inverse_root(tangential(multiplier, normal), normal);
+                        decided(scale(along, parameters.scale_factor))
                     }
                     _ => by_slip(),
                 }
@@ -102,7 +104,7 @@ pub(crate) fn find_tangents(
     }
 }
 
-/// Trial traction q̂ = k P λ + κ c s of a node with slip s, and its bound.
+/// Trial traction q̂ = k P λ + κ c s of a node with slip s, in the plane in which the limit of friction is a circle, and its bound.
 struct TrialTraction {
     traction: [f64; 3],
     of_slip: [f64; 3],
@@ -112,10 +114,12 @@ struct TrialTraction {
 impl TrialTraction {
     fn new(state: &SlaveState, slip: [f64; 3], parameters: &StepParameters, multiplier: [f64; 3]) -> Self {
         let stiffness = parameters.nodal_stiffness(state.parameters.penalty, state.kinematics.area);
-        let of_slip = scale(slip, parameters.tangent_factor * stiffness);
-        let pressure = parameters.scale_factor * dot(multiplier, state.kinematics.normal);
+        let (normal, ellipse) = (state.kinematics.normal, parameters.ellipse);
+        let of_slip = scale(ellipse.root(slip, normal), parameters.tangent_factor * stiffness);
+        let pressure = parameters.scale_factor * dot(multiplier, normal);
+        let of_multiplier = ellipse.inverse_root(tangential(multiplier, normal), normal);
         Self {
-            traction: add(scale(tangential(multiplier, state.kinematics.normal), parameters.scale_factor), of_slip),
+            traction: add(scale(of_multiplier, parameters.scale_factor), of_slip),
             of_slip,
             bound: state.parameters.friction.at(pressure),
         }

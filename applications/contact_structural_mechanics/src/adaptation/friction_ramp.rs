@@ -10,7 +10,7 @@ use zelus_core::entities::OuterLoop;
 use zelus_core::model::{ModelPart, Variable};
 use zelus_core::vector3::{norm, scale};
 
-use crate::law::FrictionLaw;
+use crate::law::{FrictionEllipse, FrictionLaw};
 use crate::mortar::tangent;
 use crate::slave_nodes::SlaveStates;
 use crate::tolerances::Tolerances;
@@ -75,7 +75,7 @@ impl FrictionRamp {
         &mut self,
         part: &mut ModelPart,
         states: &mut SlaveStates,
-        law: &FrictionLaw,
+        (law, ellipse): (&FrictionLaw, FrictionEllipse),
         tolerances: Tolerances,
     ) -> OuterLoop {
         let Some((stage, numbers)) = self.waiting.take() else { return OuterLoop::Done };
@@ -97,7 +97,8 @@ impl FrictionRamp {
                 let area = state.kinematics.area;
                 let slip = if area > 0.0 { scale(state.kinematics.weighted_slip, area.recip()) } else { [0.0; 3] };
                 let slides = norm(tolerances.vector_of(slip)) > 0.0 || state.parameters.friction.is_smooth();
-                state.law.tangent = tangent(slip, state.kinematics.normal, dimension);
+                let normal = state.kinematics.normal;
+                state.law.tangent = tangent(ellipse.root(slip, normal), normal, dimension);
                 state.law.slides = Some(slides);
             }
         });

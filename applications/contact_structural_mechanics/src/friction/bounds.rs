@@ -28,8 +28,9 @@ pub(crate) fn meet_bounds(
     slave_nodes: &mut SlaveNodes,
     states: &SlaveStates,
     multiplier: Multiplier,
-    scale_factor: f64,
+    parameters: &StepParameters,
 ) {
+    let (scale_factor, ellipse) = (parameters.scale_factor, parameters.ellipse);
     if !matches!(multiplier, Multiplier::Vector(_)) {
         return;
     }
@@ -37,8 +38,9 @@ pub(crate) fn meet_bounds(
         let whole = multiplier.value(slave_nodes, states.owner(slave));
         let (pressure, along) = (dot(whole, state.kinematics.normal), tangential(whole, state.kinematics.normal));
         let limit = state.parameters.friction.at(scale_factor * pressure).max(0.0) / scale_factor;
-        if norm(along) > 0.0 {
-            let met = add(scale(state.kinematics.normal, pressure), scale(along, limit / norm(along)));
+        let size = norm(ellipse.inverse_root(along, state.kinematics.normal));
+        if size > 0.0 {
+            let met = add(scale(state.kinematics.normal, pressure), scale(along, limit / size));
             multiplier.set(slave_nodes, states.owner(slave), met);
         }
     }

@@ -6,9 +6,10 @@ use std::ops::RangeInclusive;
 use zelus_core::Result;
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::model::ModelPart;
+use zelus_structural_mechanics::variables::TEMPERATURE;
 
 use crate::interface::{Interface, Roles};
-use crate::law::{FrictionLaw, Margin, SlipRule};
+use crate::law::{FrictionEllipse, FrictionLaw, Margin, SlipRule};
 use crate::laws::friction::COULOMB;
 use crate::pairs::Friction;
 
@@ -26,14 +27,22 @@ pub struct FrictionSettings {
     pub margin: Margin,
     /// Whether in the plane a node keeps the direction in which it began to slide (`sliding_direction`).
     pub keeps_direction: bool,
+    /// Limit by direction, of multipliers (`friction_direction`, `friction_ratio`).
+    pub ellipse: FrictionEllipse,
     /// Every so many steps all nodes start in stick; `None` for never (`slip_step_reset_frequency`).
     pub reset_frequency: Option<usize>,
 }
 
 impl Default for FrictionSettings {
     fn default() -> Self {
-        let (coefficients, reset_frequency) = (BTreeMap::new(), None);
-        Self { law: &COULOMB, coefficients, margin: Margin::default(), keeps_direction: true, reset_frequency }
+        Self {
+            law: &COULOMB,
+            coefficients: BTreeMap::new(),
+            margin: Margin::default(),
+            keeps_direction: true,
+            ellipse: FrictionEllipse::default(),
+            reset_frequency: None,
+        }
     }
 }
 
@@ -135,6 +144,7 @@ pub(crate) fn prepare(
         *slot = sum / count.max(1) as f64;
     }
     if friction != Friction::None {
+        check_temperature(part, law)?;
         read_further_numbers(part, interfaces, law)?;
     }
     if friction == Friction::Coulomb && !without.is_empty() {
@@ -153,12 +163,26 @@ pub(crate) fn prepare(
     Ok(if pure { SlipRule::Pure } else { SlipRule::Bounded(settings.margin) })
 }
 
+/// Laws that depend on the temperature need one.
+///
+/// # Errors
+/// Nodes without TEMPERATURE.
+fn check_temperature(part: &ModelPart, law: &FrictionLaw) -> Result<()> {
+    if !law.depends_on_temperature() || part.nodes.history.has(TEMPERATURE.name()) {
+        return Ok(());
+    }
+    let fact = "the law of friction depends on TEMPERATURE, which nodes do not have";
+    let remedy = "solve for heat, too (\"solver_type\": \"ThermoMechanicallyCoupled\"), or take Coulomb's law";
+    Err(Diagnostic::error("friction-temperature", fact).remedy(remedy).into())
+}
+
 /// Writes all numbers of the law but the first, the mean over the slave facets of a node.
 ///
 /// # Errors
-/// A number that neither the properties nor a node of a slave facet with friction have.
+/// A number that neither the properties nor a node of a slave facet with friction have, and numbers that do not fit together.
 fn read_further_numbers(part: &mut ModelPart, interfaces: &[Interface], law: &FrictionLaw) -> Result<()> {
-    for variable in law.variables().skip(1) {
+    for (at, variable) in law.variables().enumerate().skip(1) {
+        let any_sign = at >= law.strengths.len() + law.constants.len();
         let mut sums = vec![(0.0, 0_usize); part.nodes.len()];
         let [first, written] = [law.variable(), variable].map(|own| part.nodes.values.values(own, 0));
         let facets = interfaces.iter().flat_map(|own| own.facets.iter().map(move |facet| (&own.key, facet)));
@@ -166,7 +190,8 @@ fn read_further_numbers(part: &mut ModelPart, interfaces: &[Interface], law: &Fr
             let own = part.properties.get(&facet.properties).and_then(|p| p.number(variable.name()));
             for &node in &facet.nodes {
                 let at = node as usize;
-                let number = own.or_else(|| written.get(at).copied().filter(|number| *number > 0.0));
+                let number = own
+                    .or_else(|| written.get(at).copied().filter(|number| *number > 0.0 || (any_sign && *number < 0.0)));
                 if number.is_none() && first.get(at).is_some_and(|strength| *strength > 0.0) {
                     let (name, id) = (variable.name(), facet.properties);
                     let fact = format!("the law of friction of pair \"{pair}\" has no {name} in properties {id}");
@@ -174,7 +199,7 @@ fn read_further_numbers(part: &mut ModelPart, interfaces: &[Interface], law: &Fr
                     return Err(Diagnostic::error("missing-constant", fact).remedy(remedy).into());
                 }
                 let number = number.unwrap_or(0.0);
-                if number < 0.0 {
+                if number < 0.0 && !any_sign {
                     let (name, id) = (variable.name(), facet.properties);
                     let fact = format!("{name} of properties {id} is {number}, it must be 0 or more");
                     return Err(Diagnostic::error("negative-friction", fact).remedy("write a number from 0").into());
@@ -186,6 +211,16 @@ fn read_further_numbers(part: &mut ModelPart, interfaces: &[Interface], law: &Fr
         }
         let means = sums.iter().map(|(sum, count)| sum / (*count).max(1) as f64);
         part.nodes.values.values_mut(variable, 0).iter_mut().zip(means).for_each(|(slot, mean)| *slot = mean);
+    }
+    let first = part.nodes.values.values(law.variable(), 0);
+    for facet in interfaces.iter().flat_map(|own| &own.facets).filter(|facet| facet.role != Roles::Master) {
+        let rubs = facet.nodes.iter().filter(|&&node| first.get(node as usize).is_some_and(|strength| *strength > 0.0));
+        for &node in rubs {
+            if let Err(why) = law.check_at(&part.nodes, node as usize) {
+                let fact = format!("numbers of friction of properties {} do not fit: {why}", facet.properties);
+                return Err(Diagnostic::error("friction-numbers", fact).remedy("correct the materials").into());
+            }
+        }
     }
     Ok(())
 }

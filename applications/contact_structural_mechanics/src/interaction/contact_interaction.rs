@@ -227,7 +227,7 @@ impl Interaction for ContactInteraction {
             let parameters = &self.contact.setup.parameters;
             let states = &self.contact.states;
             if !states.has_bonds() {
-                friction::meet_bounds(&mut part.slave_nodes, states, formulation.multiplier, parameters.scale_factor);
+                friction::meet_bounds(&mut part.slave_nodes, states, formulation.multiplier, parameters);
             }
             if !self.warned_of_friction {
                 let warning = friction::warn_of_pushing(part, &self.contact.states, formulation.multiplier, parameters);
@@ -391,7 +391,7 @@ impl ActiveSet for ContactInteraction {
     fn after_prediction(&mut self, part: &mut ModelPart) -> Result<()> {
         if self.acting {
             self.contact.integrate(part);
-            self.contact.setup.find_bonds(&mut self.contact.states);
+            self.set.follow(part, &mut self.contact.states, &self.contact.setup);
             self.set.find_tangents(part, &mut self.contact.states, &self.contact.setup);
             self.contact.publish(part);
         }

@@ -244,9 +244,12 @@ impl ContactState {
         activation::clear_inactive(&mut part.slave_nodes, &mut self.states, multiplier, slaves.iter().copied());
     }
 
-    /// Recomputes overlaps, weighted gaps and areas in the present configuration.
+    /// Recomputes overlaps, weighted gaps and areas in the present configuration, and temperatures where friction depends on them.
     pub(super) fn integrate(&mut self, part: &ModelPart) {
         integrate(part, &mut self.pairing, &mut self.states, &mut self.setup);
+        if self.setup.has_warm_friction() {
+            friction::find_temperatures(part, &mut self.states, &self.pairing.blocks);
+        }
     }
 
     /// Writes pressures, slips and gaps as they are in the present configuration, with the set as it stands, and forgets them.

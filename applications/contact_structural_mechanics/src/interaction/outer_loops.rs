@@ -112,7 +112,8 @@ impl OuterLoops {
         if outer != OuterLoop::Done {
             return Ok(outer);
         }
-        let (law, tolerances) = (contact.setup.settings.friction.law, contact.setup.tolerances);
+        let friction = &contact.setup.settings.friction;
+        let (law, tolerances) = ((friction.law, friction.ellipse), contact.setup.tolerances);
         if self.friction_ramp.after_convergence(part, &mut contact.states, law, tolerances) == OuterLoop::Continue {
             set.forget_sets();
             set.find_tangents(part, &mut contact.states, &contact.setup);

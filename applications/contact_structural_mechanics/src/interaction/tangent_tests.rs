@@ -16,8 +16,8 @@ use crate::active_set::{Rules, find_tangents};
 use crate::flags::SLIP;
 use crate::interface::{Facet, FacetSource, Interface, NodalNormals, NormalPatches, Patches, Roles, SlaveIndex};
 use crate::law::{
-    Augmentation, BondState, CohesiveLaw, CohesiveLawEntry, Margin, Multiplier, Nitsche, NormalVariation, Rubbing,
-    SlipRule, StepParameters, SurfaceLaw,
+    Augmentation, BondState, CohesiveLaw, CohesiveLawEntry, FrictionEllipse, Margin, Multiplier, Nitsche,
+    NormalVariation, Rubbing, SlipRule, StepParameters, SurfaceLaw,
 };
 use crate::laws::bonded::BONDED;
 use crate::laws::friction::COULOMB;
@@ -216,6 +216,7 @@ impl Contact {
             regularised: formulation.regularised,
             dynamic: false,
             friction_law: &COULOMB,
+            ellipse: FrictionEllipse::default(),
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::default(),
         });
@@ -490,6 +491,21 @@ fn tangents_below_a_rigid_shape_match_differences() {
     }
 }
 
+const ELLIPSE: FrictionEllipse = FrictionEllipse { direction: [0.6, 0.8, 0.0], ratio: 0.4 };
+
+/// Friction by direction with multipliers, whose axis the curved surface has in it in places only.
+#[test]
+fn tangents_of_friction_by_direction_match_differences() {
+    let mut contact = Contact::new(find_formulation("ALMContactFrictional").unwrap(), (3, false), Augmentation::Node);
+    let mut parameters = (*contact.parameters).clone();
+    parameters.ellipse = ELLIPSE;
+    contact.parameters = Arc::new(parameters);
+    contact.blocks.clear();
+    contact.make_blocks();
+    contact.follow();
+    check_contact(contact, "friction by direction", 3);
+}
+
 /// Bonds that are sound, are being damaged, unload, and have failed, with friction where they are closed; a node without contact among
 /// them. The branch of each node is that of its accepted state.
 #[test]
@@ -528,7 +544,7 @@ fn tangents_of_bonds_match_differences() {
     }
     // Friction by direction, elastic up to a slip or not.
     for elastic_slip in [None, Some(0.01), Some(10.0)] {
-        let rubbing = Rubbing { elastic_slip, direction: [0.6, 0.8, 0.0], ratio: 0.4 };
+        let rubbing = Rubbing { elastic_slip, ellipse: ELLIPSE };
         let (word, accepted) = states[3];
         check_bonds(3, (None, rubbing, accepted), &format!("{rubbing:?} {word}"));
     }

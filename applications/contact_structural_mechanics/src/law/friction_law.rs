@@ -41,13 +41,15 @@ registered_kind! {
     }
 }
 
-/// How a node in contact slides.
+/// How a node in contact slides, and its temperature.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sliding {
     /// Normal pressure, 0 or negative (force per area).
     pub pressure: f64,
     /// Slip of the step over its time (length per time).
     pub speed: f64,
+    /// Temperature of contact: the mean of both surfaces; 0 where the law does not ask for it.
+    pub temperature: f64,
 }
 
 /// Most numbers of a law.
@@ -60,9 +62,13 @@ pub struct FrictionLaw {
     pub strengths: &'static [&'static Variable<f64>],
     /// Further numbers, from 0, read in the same way.
     pub constants: &'static [&'static Variable<f64>],
-    /// The bound by these numbers, strengths first, and by how the node slides: a tangent at its pressure.
+    /// Temperatures, of any sign, read in the same way: a law with any depends on the temperature of contact.
+    pub temperatures: &'static [&'static Variable<f64>],
+    /// Whether these numbers fit together; why they do not.
+    pub check: fn(&[f64]) -> Result<(), &'static str>,
+    /// The bound by these numbers, strengths first, temperatures last, and by how the node slides: a tangent at its pressure.
     pub bound: fn(&[f64], Sliding) -> Bound,
-    /// Whether the bound is more than a number times the pressure, or changes with the speed.
+    /// Whether the bound is more than a number times the pressure, or changes with the speed or the temperature.
     pub depends_on_sliding: bool,
     /// Whether `friction_coefficients` of the process stands in for the first number where properties say nothing.
     pub by_coefficients: bool,
@@ -74,19 +80,39 @@ impl FrictionLaw {
         self.strengths[0]
     }
 
-    /// All its numbers, strengths first.
+    /// Whether the bound depends on the temperature of contact.
+    pub fn depends_on_temperature(&self) -> bool {
+        !self.temperatures.is_empty()
+    }
+
+    /// All its numbers, strengths first, temperatures last.
     pub fn variables(&self) -> impl Iterator<Item = &'static Variable<f64>> {
-        self.strengths.iter().chain(self.constants).copied()
+        self.strengths.iter().chain(self.constants).chain(self.temperatures).copied()
     }
 
     /// The bound at a node whose numbers are written.
     pub fn bound_at(&self, nodes: &Nodes, at: usize, sliding: Sliding) -> Bound {
+        let (numbers, count) = self.numbers_at(nodes, at);
+        (self.bound)(&numbers[..count], sliding)
+    }
+
+    /// Whether the numbers that are written at a node fit together; why they do not.
+    ///
+    /// # Errors
+    /// The reason.
+    pub fn check_at(&self, nodes: &Nodes, at: usize) -> Result<(), &'static str> {
+        let (numbers, count) = self.numbers_at(nodes, at);
+        (self.check)(&numbers[..count])
+    }
+
+    /// The numbers that are written at a node, and how many.
+    fn numbers_at(&self, nodes: &Nodes, at: usize) -> ([f64; MOST_NUMBERS], usize) {
         let (mut numbers, mut count) = ([0.0; MOST_NUMBERS], 0);
         for (number, variable) in numbers.iter_mut().zip(self.variables()) {
             *number = nodes.values.values(variable, 0).get(at).copied().unwrap_or(0.0);
             count += 1;
         }
-        (self.bound)(&numbers[..count], sliding)
+        (numbers, count)
     }
 }
 

@@ -1,33 +1,25 @@
 //! Friction of a slave node that its law of bonds or of friction by direction computes: elastic up to a limit.
 //!
-//! h = K e is the elastic slip e times the tangential stiffness K. With the unit vector a and the ratio ρ of the coefficients across a and
-//! along it, the traction is r = D h with D = ρ² I + (1 − ρ²) a⊗a. It slides where √(h·D h) reaches the limit: the bound b, by which r lies
-//! on the ellipse with the half axes b and ρ b, and the slip is normal to it (associated rule), tan of its angle to a 1/ρ² times that of
-//! the traction. The return along h is exact: D h is elastic with the stiffness K along a and ρ² K across it.
+//! h = K e is the elastic slip e times the tangential stiffness K. The traction is r = D h with the matrix D of the
+//! [ellipse](FrictionEllipse). It slides where √(h·D h) reaches the limit: the bound b, by which r lies on the ellipse, and the slip is
+//! normal to it. The return along h is exact: D h is elastic with the stiffness K along a and ρ² K across it.
 //!
 //! With an elastic slip γ at the bound the limit is K γ, and r = b D h/(K γ), whatever the pressure.
 
 use zelus_core::scalar::Real;
 use zelus_core::vector3::{dot, value};
 
+use super::friction_ellipse::FrictionEllipse;
 use super::friction_law::Bound;
 use crate::mortar::Active;
 
 /// Friction by elastic slip and direction.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rubbing {
     /// Elastic slip γ at the bound (length); without it the stiffness alone limits it.
     pub elastic_slip: Option<f64>,
-    /// Unit vector a.
-    pub direction: [f64; 3],
-    /// Ratio ρ > 0 of the coefficients across the direction and along it.
-    pub ratio: f64,
-}
-
-impl Default for Rubbing {
-    fn default() -> Self {
-        Self { elastic_slip: None, direction: [1.0, 0.0, 0.0], ratio: 1.0 }
-    }
+    /// Limit by direction.
+    pub ellipse: FrictionEllipse,
 }
 
 /// Friction at an opening.
@@ -57,10 +49,7 @@ impl Rubbing {
         if bound.value() <= 0.0 {
             return Rubbed::none();
         }
-        let square = self.ratio * self.ratio;
-        let axis: [Active; 3] = self.direction.map(Active::constant);
-        let along = dot(trial, axis);
-        let size = dot(trial, trial) * square + along * along * (1.0 - square);
+        let size = self.ellipse.square(trial);
         let (limit, share) = match self.elastic_slip {
             None => (bound, Active::constant(1.0)),
             Some(slip) => (Active::constant(stiffness * slip), bound / (stiffness * slip)),
@@ -68,8 +57,7 @@ impl Rubbing {
         let slides = size.value().sqrt() > limit.value();
         let kept = if slides { limit / size.sqrt() } else { Active::constant(1.0) };
         let elastic = trial.map(|h| h * kept);
-        let traction =
-            std::array::from_fn(|c| (elastic[c] * square + along * kept * (1.0 - square) * self.direction[c]) * share);
+        let traction = self.ellipse.product(elastic).map(|r| r * share);
         let slid: [f64; 3] = std::array::from_fn(|c| (trial[c].value() - elastic[c].value()) / stiffness);
         Rubbed { heat: dot(value(traction), slid), traction, elastic: value(elastic), slides }
     }

@@ -8,6 +8,7 @@
 //! numbers that decide are those of [`crate::tolerances`]. Without friction a state that keeps its set obeys the conditions of Hertz,
 //! Signorini and Moreau (eq. D.3a): g = 0 and λ_n ≤ 0, or g ≥ 0 and λ_n = 0.
 
+use super::friction_ellipse::FrictionEllipse;
 use super::friction_law::Bound;
 use super::node_state::NodeState;
 use crate::mortar::tangential;
@@ -94,6 +95,8 @@ pub struct SlaveNumbers {
     pub stays: bool,
     /// Limit of the tangential traction.
     pub friction: Bound,
+    /// How that depends on the direction. Trial traction and tangent are in the plane in which the limit is a circle.
+    pub ellipse: FrictionEllipse,
     /// Scale factor k.
     pub scale_factor: f64,
     /// Ratio κ of tangential to normal stiffness.
@@ -151,19 +154,19 @@ impl SlaveNumbers {
 
     /// Whether the slip of a sliding node is against the traction that should oppose it.
     fn has_turned(&self, bound: f64) -> bool {
-        let back = -dot(self.tangent, self.slip);
+        let back = -dot(self.tangent, self.ellipse.root(self.slip, self.normal));
         back > self.tolerances.length && back * self.stiffness > TURNED * bound
     }
 
-    /// Trial traction k P λ + a κ c s.
+    /// Trial traction k P λ + a κ c s, in the plane of the circle.
     fn trial(&self, coefficient: f64) -> [f64; 3] {
-        let lambda_t = tangential(self.multiplier, self.normal);
+        let lambda_t = self.ellipse.inverse_root(tangential(self.multiplier, self.normal), self.normal);
         add(scale(lambda_t, self.scale_factor), scale(self.slip_traction(), coefficient))
     }
 
-    /// Traction κ c s that the slip adds to the multiplier's.
+    /// Traction κ c s that the slip adds to the multiplier's, in the plane of the circle.
     fn slip_traction(&self) -> [f64; 3] {
-        scale(self.slip, self.tangent_factor * self.stiffness)
+        scale(self.ellipse.root(self.slip, self.normal), self.tangent_factor * self.stiffness)
     }
 }
 
@@ -218,7 +221,7 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
         return inactive(node, pressure);
     }
     let sliding = node.state == NodeState::Slip;
-    let lambda_t = tangential(node.multiplier, node.normal);
+    let lambda_t = node.ellipse.inverse_root(tangential(node.multiplier, node.normal), node.normal);
     let bound = node.friction.at(pressure);
     let (q, over) = match node.state {
         // Sliding is at the bound by its own equation, and right as long as the slip goes along the traction. Comparing
@@ -254,6 +257,7 @@ pub fn alm_frictional(node: &SlaveNumbers, rule: SlipRule) -> Decision {
         (true, 0.0) => [0.0; 3],
         (true, length) => scale(direction, bound / length),
     };
+    let traction = node.ellipse.root(traction, node.normal);
     Decision {
         pressure,
         traction,
@@ -385,6 +389,7 @@ mod tests {
             driven: false,
             stays: false,
             friction: Bound { coefficient: 0.3, threshold: 0.0 },
+            ellipse: FrictionEllipse::default(),
             scale_factor: 4.0,
             tangent_factor: 0.5,
             tolerances: Tolerances::of(1.0, 4.0, 0.0),
@@ -479,6 +484,28 @@ mod tests {
         assert_eq!(alm_frictional(&turned(0.39), margin).state, NodeState::Stick);
         let pure = alm_frictional(&node(NodeState::Slip, [0.0, 0.0, -1.0]), SlipRule::Pure);
         assert_eq!((pure.state, pure.slip_changed), (NodeState::Slip, false));
+    }
+
+    #[test]
+    fn the_limit_depends_on_the_direction() {
+        // Bound 1.5 along x, 0.6 across it; multipliers times 4 are tractions.
+        let decide = |lambda_t: [f64; 2]| {
+            let multiplier = [lambda_t[0], lambda_t[1], -1.0];
+            let ellipse = FrictionEllipse { direction: [1.0, 0.0, 0.0], ratio: 0.4 };
+            alm_frictional(&SlaveNumbers { ellipse, ..node(NodeState::Stick, multiplier) }, COULOMB)
+        };
+        for (lambda_t, state) in [
+            ([0.374, 0.0], NodeState::Stick),
+            ([0.376, 0.0], NodeState::Slip),
+            ([0.0, 0.149], NodeState::Stick),
+            ([0.0, 0.151], NodeState::Slip),
+        ] {
+            assert_eq!(decide(lambda_t).state, state, "{lambda_t:?}");
+        }
+        // Beyond the limit the traction lies on the ellipse, at its point along the multiplier.
+        let [x, y, _] = decide([0.3, 0.3]).traction;
+        assert!((x - y).abs() < 1e-14 && (x * x + (y / 0.4).powi(2) - 2.25).abs() < 1e-14, "{x} {y}");
+        assert_eq!(decide([0.1, 0.05]).traction.map(|t| (t * 1e12).round() / 1e12), [0.4, 0.2, 0.0]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Numbers that every pair of a run shares.
 
 use super::augmentation::Augmentation;
+use super::friction_ellipse::FrictionEllipse;
 use super::friction_law::FrictionLaw;
 use super::nitsche::Nitsche;
 use super::rules::SlipRule;
@@ -56,6 +57,8 @@ pub struct StepParameters {
     pub operator_threshold: OperatorThreshold,
     /// Law that limits tangential tractions.
     pub friction_law: &'static FrictionLaw,
+    /// Limit of friction by direction, of multipliers; bonds and penalties have it in their own law.
+    pub ellipse: FrictionEllipse,
     /// How stick and slip are told apart.
     pub slip_rule: SlipRule,
     /// Whether penalties act pair by pair on weighted gaps, as in Kratos.

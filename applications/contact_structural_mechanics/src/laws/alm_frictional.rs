@@ -12,6 +12,9 @@
 //! In the regularised methods (1/ε > 0), g̃ − A k λ·n/ε and s − A (k P λ − P R t°)/(κ ε) take the places of g̃ and s: the inelastic
 //! parts of gap and slip. t° is the traction of the last accepted state, rotated with the facet by R.
 //!
+//! With friction by direction slip is q = D^(1/2) b(…) τ with the root of the matrix D of the [ellipse](FrictionEllipse), and τ the
+//! direction of sliding in the plane in which its limit is a circle.
+//!
 //! In space the direction τ of sliding rotates with the trial traction, which the tangent knows. The slip s is the objective one when
 //! both operators changed by more than a threshold since the start of the step, otherwise −P [D δ¹ − M δ²] with δ = x − x_reference. In
 //! dynamics and in the regularised methods it is that of [`SlipMeasure::Rotated`]: the tractions do work on its rate, so that friction
@@ -23,8 +26,8 @@ use zelus_core::vector3::{add, constant, dot, scale, sub, value};
 
 use crate::law::rules::{self, Decision, SlaveNumbers, SlipRule};
 use crate::law::{
-    Augmentation, DirectionRotation, Multiplier, NodeForces, NodeInputs, NodeLaw, NodeState, SlaveNode, SlipMeasure,
-    StepParameters,
+    Augmentation, DirectionRotation, FrictionEllipse, Multiplier, NodeForces, NodeInputs, NodeLaw, NodeState,
+    SlaveNode, SlipMeasure, StepParameters,
 };
 use crate::mortar::{OperatorThreshold, tangential};
 use crate::pairs::{Formulation, Friction};
@@ -46,6 +49,8 @@ pub struct AlmFrictional {
     pub regularised: bool,
     /// Whether bodies have inertia, so that friction must make no energy.
     pub dynamic: bool,
+    /// Limit of friction by direction.
+    pub ellipse: FrictionEllipse,
 }
 
 impl AlmFrictional {
@@ -84,6 +89,7 @@ impl NodeLaw for AlmFrictional {
             augmentation: parameters.augmentation,
             regularised: parameters.regularised,
             dynamic: parameters.dynamic,
+            ellipse: parameters.ellipse,
         }
     }
 
@@ -131,10 +137,12 @@ impl NodeLaw for AlmFrictional {
                 let DirectionRotation { by_slip, by_multiplier } = node.rotation;
                 if by_slip != 0.0 || by_multiplier != 0.0 {
                     let by_multiplier = by_multiplier * bound.value();
-                    (0..3).for_each(|c| q[c].add_scaled(across(lambda_t, node)[c], by_multiplier));
-                    rotation = tangential(across(slip, node).map(|s| s * by_slip), n);
+                    let turns = across(self.ellipse.inverse_root(lambda_t, n), node);
+                    (0..3).for_each(|c| q[c].add_scaled(turns[c], by_multiplier));
+                    let turns = across(self.ellipse.root(slip, n), node).map(|s| s * by_slip);
+                    rotation = tangential(self.ellipse.root(turns, n), n);
                 }
-                let q = tangential(q, n);
+                let q = tangential(self.ellipse.root(q, n), n);
                 let softness = node.area / node.stiffness;
                 let row = |c: usize| (n[c] * gap + rotation[c] - (lambda_t[c] * k - q[c]) * softness) * k;
                 (std::array::from_fn(row), 0.0)

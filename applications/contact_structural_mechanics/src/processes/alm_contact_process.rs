@@ -24,8 +24,8 @@ use crate::friction::FrictionSettings;
 use crate::interaction::ContactInteraction;
 use crate::interface::{GivenParameters, NodalNormals, check_parts};
 use crate::law::{
-    Augmentation, CohesiveLaw, CohesiveLawEntry, Margin, Nitsche, NitscheVariant, NormalVariation, OverclosureLaw,
-    OverclosureLawEntry, Rubbing,
+    Augmentation, CohesiveLaw, CohesiveLawEntry, FrictionEllipse, Margin, Nitsche, NitscheVariant, NormalVariation,
+    OverclosureLaw, OverclosureLawEntry, Rubbing,
 };
 use crate::laws::bonded::BONDED;
 use crate::mortar::OperatorThreshold;
@@ -86,10 +86,10 @@ struct ContactKeys {
     /// Only the process of the penalty method has it.
     #[serde(default)]
     cohesive_pairs: Vec<String>,
-    /// Only the process of the penalty method has it.
+    /// Only the processes of the augmented Lagrangian and the penalty method have it.
     #[serde(default)]
     friction_direction: Vec<f64>,
-    /// Only the process of the penalty method has it.
+    /// Only the processes of the augmented Lagrangian and the penalty method have it.
     friction_ratio: Option<f64>,
     /// Only the process of the penalty method has it.
     #[serde(default)]
@@ -207,7 +207,14 @@ fn interaction(
         }
         _ => named,
     };
-    let surface = surface(settings, &whole, (formulation, dimension))?;
+    let ellipse = ellipse(settings, &whole, dimension, request)?;
+    let augmentation =
+        whole.augmentation.unwrap_or(if formulation.weighted_gaps { Augmentation::Pair } else { Augmentation::Node });
+    let has_multipliers = formulations.name == AUGMENTED.name;
+    if has_multipliers && !whole.friction_direction.is_empty() {
+        check_direction(settings, formulation, augmentation)?;
+    }
+    let surface = if has_multipliers { None } else { surface(settings, &whole, (formulation, ellipse))? };
     let formulation = if surface.is_some() { &BONDED } else { formulation };
     let keys: Option<FrictionKeys> =
         settings.node().get("frictional_law").is_some().then(|| settings.parse()).transpose()?;
@@ -223,6 +230,7 @@ fn interaction(
                 Margin { augmentation: keys.slip_augmentation_coefficient, threshold: keys.slip_threshold }
             },
             keeps_direction: keys.sliding_direction == SlidingDirection::Kept,
+            ellipse: if has_multipliers { ellipse } else { FrictionEllipse::default() },
             reset_frequency: usize::try_from(keys.slip_step_reset_frequency).ok().filter(|f| *f > 0),
         },
     };
@@ -232,8 +240,6 @@ fn interaction(
         NormalVariation::Exact if formulation.frictional() && keeps_normals => NormalVariation::None,
         other => other,
     };
-    let augmentation =
-        whole.augmentation.unwrap_or(if formulation.weighted_gaps { Augmentation::Pair } else { Augmentation::Node });
     if formulation.frictional() {
         let by_node = part_is_explicit || matches!(formulation.multiplier, Multiplier::Vector(_));
         check_sliding(settings, friction.law, by_node && augmentation == Augmentation::Node)?;
@@ -336,6 +342,48 @@ fn overclosure(settings: &Settings, formulation: &Formulation) -> Result<Option<
     Ok(Some(Arc::from((entry.build)(&own)?)))
 }
 
+/// The limit of friction by direction, of the settings; warns of a ratio without a direction.
+///
+/// # Errors
+/// A direction that is no vector in space.
+fn ellipse(
+    settings: &Settings,
+    keys: &ContactKeys,
+    dimension: usize,
+    request: &mut ProcessRequest<'_>,
+) -> Result<FrictionEllipse> {
+    let ratio = keys.friction_ratio.unwrap_or(1.0);
+    if keys.friction_direction.is_empty() {
+        if ratio != 1.0 {
+            let fact = format!("\"friction_ratio\" of {} is read and changes nothing", settings.name());
+            let warning = Diagnostic::warning("key-without-effect", fact).at(settings.key_place("friction_ratio"));
+            request.report.push(warning.remedy("give \"friction_direction\", along which the coefficient holds"));
+        }
+        return Ok(FrictionEllipse::default());
+    }
+    let vector = <[f64; 3]>::try_from(keys.friction_direction.as_slice()).unwrap_or_default();
+    let size = norm(vector);
+    if dimension != 3 || size <= 0.0 {
+        let fact = "\"friction_direction\" must be a vector of three numbers, in a model in space";
+        let remedy = "write e.g. [1.0, 0.0, 0.0], or take it out in the plane";
+        return Err(settings.error("friction_direction", "surface-law", fact.to_owned()).remedy(remedy).into());
+    }
+    Ok(FrictionEllipse { direction: vector.map(|c| c / size), ratio })
+}
+
+/// Refuses friction by direction where multipliers do not state it.
+///
+/// # Errors
+/// A type of contact without friction, and gaps that augment pair by pair.
+fn check_direction(settings: &Settings, formulation: &Formulation, augmentation: Augmentation) -> Result<()> {
+    if formulation.frictional() && augmentation == Augmentation::Node {
+        return Ok(());
+    }
+    let fact = "\"friction_direction\" needs \"contact_type\": \"Frictional\" and \"augmentation\": \"node\"";
+    let remedy = "choose both, or take \"friction_direction\" out";
+    Err(settings.error("friction_direction", "surface-law", fact.to_owned()).remedy(remedy).into())
+}
+
 /// Laws of bonds and of friction by direction, of the settings.
 ///
 /// # Errors
@@ -343,7 +391,7 @@ fn overclosure(settings: &Settings, formulation: &Formulation) -> Result<Option<
 fn surface(
     settings: &Settings,
     keys: &ContactKeys,
-    (formulation, dimension): (&Formulation, usize),
+    (formulation, ellipse): (&Formulation, FrictionEllipse),
 ) -> Result<Option<SurfaceSettings>> {
     let refuse = |key: &str, fact: &str, remedy: &str| -> Result<Option<SurfaceSettings>> {
         Err(settings.error(key, "surface-law", fact.to_owned()).remedy(remedy).into())
@@ -372,19 +420,7 @@ fn surface(
         let fact = format!("\"{key}\" and \"pressure_overclosure\" both give the tractions of contact");
         return refuse(key, &fact, "take one of the two out");
     }
-    let mut rubbing = Rubbing::default();
-    if keys.elastic_slip > 0.0 {
-        rubbing.elastic_slip = Some(keys.elastic_slip);
-    }
-    if directed {
-        let size = norm(<[f64; 3]>::try_from(keys.friction_direction.as_slice()).unwrap_or_default());
-        if dimension != 3 || size <= 0.0 {
-            let fact = "\"friction_direction\" must be a vector of three numbers, in a model in space";
-            return refuse("friction_direction", fact, "write e.g. [1.0, 0.0, 0.0], or take it out in the plane");
-        }
-        rubbing.direction = std::array::from_fn(|c| keys.friction_direction[c] / size);
-        rubbing.ratio = keys.friction_ratio.unwrap_or(1.0);
-    }
+    let rubbing = Rubbing { elastic_slip: Some(keys.elastic_slip).filter(|slip| *slip > 0.0), ellipse };
     let Some(node) = law else { return Ok(Some(SurfaceSettings { cohesive: None, pairs: Vec::new(), rubbing })) };
     if keys.parameters.adapt_penalty || keys.parameters.manual {
         let fact =

@@ -42,6 +42,7 @@ impl Setup {
             levels_back: if settings.explicit.is_some() { 2 } else { 1 },
             operator_threshold: settings.operator_threshold,
             friction_law: settings.friction.law,
+            ellipse: settings.friction.ellipse,
             slip_rule: SlipRule::Pure,
             normal_variation: settings.normal_variation,
             augmentation: settings.augmentation,
@@ -109,6 +110,11 @@ impl Setup {
             && self.settings.surface.is_none()
             && self.settings.augmentation == Augmentation::Node
             && matches!(self.settings.formulation.multiplier, Multiplier::Vector(_))
+    }
+
+    /// Whether friction depends on the temperature of contact.
+    pub(crate) fn has_warm_friction(&self) -> bool {
+        self.settings.formulation.frictional() && self.settings.friction.law.depends_on_temperature()
     }
 
     /// Finds the tractions of bonds in the present state.

@@ -82,6 +82,9 @@ pub struct SlaveParameters {
     pub dynamic_factor: f64,
     /// Limit of the tangential traction.
     pub friction: Bound,
+    /// Temperature of contact; 0 where the law of friction does not ask for it.
+    #[serde(default)]
+    pub temperature: f64,
     /// Soft contact at its present pressure, where the deck has a law of it.
     pub soft: Option<SoftTangent>,
     /// Whether contact does not open again (`no_separation`).

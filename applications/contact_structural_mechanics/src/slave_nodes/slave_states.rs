@@ -339,7 +339,8 @@ impl SlaveStates {
     /// Takes the bounds of friction from the numbers of a law at the nodes, of nodes at rest and without pressure.
     pub fn read_friction(&mut self, nodes: &Nodes, law: &FrictionLaw) {
         for (&node, state) in self.table.nodes.iter().zip(&mut self.states) {
-            state.parameters.friction = law.bound_at(nodes, node as usize, Sliding::default());
+            let sliding = Sliding { temperature: state.parameters.temperature, ..Sliding::default() };
+            state.parameters.friction = law.bound_at(nodes, node as usize, sliding);
         }
     }
 

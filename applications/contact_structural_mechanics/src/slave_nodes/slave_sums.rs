@@ -2,7 +2,7 @@
 
 use std::ops::{Index, IndexMut};
 
-use zelus_core::model::ModelPart;
+use zelus_core::model::{Halo, ModelPart};
 
 use super::slave_states::SlaveStates;
 use crate::interface::SlaveIndex;
@@ -40,13 +40,28 @@ impl<T: Copy + Default> SlaveSums<T> {
     where
         T: Summands<C>,
     {
+        self.reduce(part, states, |halo, numbers| halo.sum(numbers));
+    }
+
+    /// Takes the least of each number over all ranks. Collective.
+    pub(crate) fn least_over_ranks<const C: usize>(&mut self, part: &ModelPart, states: &SlaveStates)
+    where
+        T: Summands<C>,
+    {
+        self.reduce(part, states, |halo, numbers| halo.least(numbers));
+    }
+
+    fn reduce<const C: usize>(&mut self, part: &ModelPart, states: &SlaveStates, by: impl Fn(Halo, &mut [f64]))
+    where
+        T: Summands<C>,
+    {
         let Some(share) = &part.share else { return };
         let slaves = states.slaves();
         let own = |node: u32| states.at(node).filter(|slave| slaves.binary_search(slave).is_ok());
         let halo = share.halo.only(|node| own(node).next().is_some());
         let places = |slave: SlaveIndex| C as u32 * slave.0..C as u32 * (slave.0 + 1);
         let mut numbers: Vec<[f64; C]> = self.0.iter().map(T::numbers).collect();
-        halo.expand(|node, out| out.extend(own(node).flat_map(places))).sum(numbers.as_flattened_mut());
+        by(halo.expand(|node, out| out.extend(own(node).flat_map(places))), numbers.as_flattened_mut());
         self.0 = numbers.into_iter().map(T::of).collect();
     }
 }

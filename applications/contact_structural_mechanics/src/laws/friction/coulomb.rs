@@ -9,6 +9,8 @@ use crate::variables::FRICTION_COEFFICIENT;
 pub const COULOMB: FrictionLaw = FrictionLaw {
     strengths: &[&FRICTION_COEFFICIENT],
     constants: &[],
+    temperatures: &[],
+    check: |_| Ok(()),
     bound: |numbers, _| Bound { coefficient: numbers[0], threshold: 0.0 },
     depends_on_sliding: false,
     by_coefficients: true,

@@ -3,6 +3,7 @@
 mod coulomb;
 mod orowan;
 mod static_kinetic;
+mod thermal_softening;
 mod tresca;
 
 pub use coulomb::COULOMB;

@@ -2,6 +2,7 @@
 
 use zelus_core::register;
 
+use super::COULOMB;
 use crate::law::{Bound, FrictionLaw, FrictionLawEntry};
 use crate::variables::TRESCA_FRICTION_THRESHOLD;
 
@@ -10,9 +11,8 @@ register! { FrictionLawEntry "Tresca",
     source: "|t| ≤ τ_max; Tresca (1864)",
     build: FrictionLaw {
         strengths: &[&TRESCA_FRICTION_THRESHOLD],
-        constants: &[],
         bound: |numbers, _| Bound { coefficient: 0.0, threshold: numbers[0] },
-        depends_on_sliding: false,
         by_coefficients: false,
+        ..COULOMB
     },
 }
