@@ -45,7 +45,6 @@ CASE = Case(
      Quantity("balance", 0.0, 1e-3, scale=1.0, order=False)],
     (2, 4), run, size=lambda n: 1 / n,
     variants={"30°": {}, "0°": {"angle": 0.0}, "70°": {"angle": 70.0}, "−45°": {"angle": -45.0}, "90°": {"angle": 90.0},
-              "30°, penalty": {"family": "penalty frictional"}, "70°, penalty": {"angle": 70.0, "family": "penalty frictional"},
               "30°, turned by 40°": {"turn": 40.0}, "30°, millimetres": {"length": 1e3, "stress": 1e-6}},
     quick=["30°"],
     note="The coefficient is 0.4 along the lay and 0.2 across it. The slip is normal to the ellipse of the limit, so that the traction turns off the motion.")
