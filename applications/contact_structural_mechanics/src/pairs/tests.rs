@@ -3,7 +3,8 @@
 use super::*;
 use crate::kratos::FirstIterateTangent;
 use crate::law::{
-    Augmentation, Bound, ContactLaw, DirectionRotation, MeshTying, MultiplierConstraint, NodeState, SlaveNode,
+    Augmentation, Bound, ContactLaw, DirectionRotation, FrictionEllipse, MeshTying, MultiplierConstraint, NodeState,
+    SlaveNode,
 };
 use crate::laws::alm_frictional::AlmFrictional;
 use crate::laws::alm_frictionless::AlmFrictionless;
@@ -184,6 +185,7 @@ fn frictional(area: f64) -> AlmFrictional {
         augmentation: PAIR,
         regularised: false,
         dynamic: false,
+        ellipse: FrictionEllipse::default(),
     }
 }
 
