@@ -165,14 +165,15 @@ impl Contact {
         (space, second_order): (usize, bool),
         augmentation: Augmentation,
     ) -> Self {
-        Self::of(formulation, space, surfaces(space, second_order), augmentation)
+        let circle = FrictionEllipse::default();
+        Self::of(formulation, space, surfaces(space, second_order), (augmentation, circle))
     }
 
     fn of(
         formulation: &'static Formulation,
         space: usize,
         (places, interface): (Vec<[f64; 3]>, Interface),
-        augmentation: Augmentation,
+        (augmentation, ellipse): (Augmentation, FrictionEllipse),
     ) -> Self {
         let mut noise = Noise::new(5);
         let count = places.len();
@@ -216,7 +217,7 @@ impl Contact {
             regularised: formulation.regularised,
             dynamic: false,
             friction_law: &COULOMB,
-            ellipse: FrictionEllipse::default(),
+            ellipse,
             slip_rule: SlipRule::Bounded(Margin::default()),
             nitsche: Nitsche::default(),
         });
@@ -484,7 +485,12 @@ fn tangents_of_curved_interfaces_match_differences() {
 fn tangents_below_a_rigid_shape_match_differences() {
     for space in [2, 3] {
         for name in ["ALMContactFrictionless", "ALMContactFrictional"] {
-            let contact = Contact::of(find_formulation(name).unwrap(), space, below_a_ball(space), Augmentation::Node);
+            let contact = Contact::of(
+                find_formulation(name).unwrap(),
+                space,
+                below_a_ball(space),
+                (Augmentation::Node, FrictionEllipse::default()),
+            );
             assert!(contact.blocks.iter().all(|block| block.nodes(0).contains(&(contact.part.nodes.len() as u32 - 1))));
             check_contact(contact, &format!("{name} {space}"), space);
         }
@@ -496,13 +502,8 @@ const ELLIPSE: FrictionEllipse = FrictionEllipse { direction: [0.6, 0.8, 0.0], r
 /// Friction by direction with multipliers, whose axis the curved surface has in it in places only.
 #[test]
 fn tangents_of_friction_by_direction_match_differences() {
-    let mut contact = Contact::new(find_formulation("ALMContactFrictional").unwrap(), (3, false), Augmentation::Node);
-    let mut parameters = (*contact.parameters).clone();
-    parameters.ellipse = ELLIPSE;
-    contact.parameters = Arc::new(parameters);
-    contact.blocks.clear();
-    contact.make_blocks();
-    contact.follow();
+    let formulation = find_formulation("ALMContactFrictional").unwrap();
+    let contact = Contact::of(formulation, 3, surfaces(3, false), (Augmentation::Node, ELLIPSE));
     check_contact(contact, "friction by direction", 3);
 }
 
@@ -551,7 +552,7 @@ fn tangents_of_bonds_match_differences() {
 }
 
 fn check_bonds(space: usize, bonds: (Option<Box<dyn CohesiveLaw>>, Rubbing, fn(usize) -> BondState), what: &str) {
-    let mut contact = Contact::of(&BONDED, space, surfaces(space, false), Augmentation::Node);
+    let mut contact = Contact::new(&BONDED, (space, false), Augmentation::Node);
     contact.states.add_bonds(true);
     contact.bonds = Some(bonds);
     contact.follow();
