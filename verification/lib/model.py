@@ -216,6 +216,18 @@ class Model:
         family = "Line" if self.dim == 2 else "Surface"
         return self.between(*(body.conditions(side, family, *where) for body, side, *where in (slave, master)))
 
+    def interface_with_shape(self, slave, tool, reference, **settings):
+        """A pair of a side and a rigid shape, whose part and reference node are called so; what the contact process gets for it."""
+        body, side, *where = slave
+        made = body.conditions(side, "Line" if self.dim == 2 else "Surface", *where)
+        slaves = self._nodes_of(made)
+        self.mesh.part("Top", slaves, (), made)
+        self.pairs.append(("Top", "Top"))
+        self.watched[0] = sorted(slaves)
+        self.process("rigid_shape_process", {"model_part_name": "Structure." + tool, "reference_model_part_name": "Structure." + reference,
+            **settings})
+        return {"contact_model_part": {"0": ["Top", tool]}, "assume_master_slave": {"0": ["Top"]}}
+
     def between(self, slave, master):
         """A pair of lists of conditions; returns the slave's nodes."""
         number, slaves = len(self.pairs), self._nodes_of(slave)

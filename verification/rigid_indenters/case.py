@@ -52,16 +52,11 @@ def run(n, shape="cylinder", family="ALM", length=1.0, stress=1.0):
     m.material(block, "axis" if about_axis else "strain", YOUNG, POISSON)
     m.fix(block.side_nodes["y0"], x=0.0, y=0.0)
     m.fix(block.side_nodes["x0"], x=0.0)
-    made = block.conditions("y1", "Line", lambda p: p[0] < 3.0)
-    slaves = sorted(m._nodes_of(made))
-    m.mesh.part("Top", slaves, (), made)
-    m.pairs.append(("Top", "Top"))
-    m.watched[0] = slaves
     is_round = shape in ("cylinder", "sphere")
     tool = {"name": shape, "radius": RADIUS * length} if is_round else {
         "name": "cone", "half_angle": math.degrees(math.atan(1 / SLOPE)), "height": 0.5 * length}
-    m.process("rigid_shape_process", {"model_part_name": "Structure.Tool", "reference_model_part_name": "Structure.Point",
-        "shape": tool, "position": [0.0, RADIUS * length if is_round else 0.0, 0.0], "facet_angle": 2.0})
+    contact = m.interface_with_shape((block, "y1", lambda p: p[0] < 3.0), "Tool", "Point", shape=tool,
+                                     position=[0.0, RADIUS * length if is_round else 0.0, 0.0], facet_angle=2.0)
     if not about_axis:
         for variable, held in (("DISPLACEMENT", 0), ("ROTATION", 2)):
             m.process("assign_vector_variable_process", {"model_part_name": "Structure.Point", "variable_name": variable,
@@ -69,7 +64,6 @@ def run(n, shape="cylinder", family="ALM", length=1.0, stress=1.0):
         force *= 0.5  # on half of the model
     m.process("assign_vector_variable_to_conditions_process", {"model_part_name": "Structure.Point", "variable_name": "POINT_LOAD",
         "value": [0.0, f"{-force * m.force_scale!r}*t", 0.0], "interval": [0.0, "End"]}, "loads")
-    contact = {"contact_model_part": {"0": ["Top", "Tool"]}, "assume_master_slave": {"0": ["Top"]}}
     if about_axis:
         contact["alternative_formulations"] = {"axisymmetric": True}
     s = solve(m, family, contact=contact)

@@ -16,24 +16,18 @@ def run(n, dim=2, family="ALM frictional", time_step=0.02, length=1.0, stress=1.
     weight = stress / length  # of a unit volume where g is one unit of length by s²
     m.material(slope, law, 2e3 if dim == 2 else 4e3, 0.3, DENSITY=1e-3 * weight / length)
     m.fix(slope.side_nodes["xyz"[last] + "0"], *[0.0] * dim)
-    made = slope.conditions("xyz"[last] + "1", "Line" if dim == 2 else "Surface")
-    slaves = sorted(m._nodes_of(made))
-    m.mesh.part("Top", slaves, (), made)
-    m.pairs.append(("Top", "Top"))
-    m.watched[0] = slaves
     share = 0.5 if dim == 2 else 0.4  # of m r²
     mass = MASS * m.force_scale / length
     inertia = share * mass * (RADIUS * length) ** 2
     place = [(0.8 if dim == 2 else 0.3) * length, 0.0, 0.0]
     place[last] = (RADIUS + 1e-3) * length
-    m.process("rigid_shape_process", {"model_part_name": "Structure.Tool", "reference_model_part_name": "Structure.Centre",
-        "shape": {"name": "cylinder" if dim == 2 else "sphere", "radius": RADIUS * length}, "position": place, "mass": mass,
-        "inertia": inertia if dim == 2 else [inertia] * 3, "facet_angle": 5.0 if dim == 2 else 30.0})
+    contact = m.interface_with_shape(
+        (slope, "xyz"[last] + "1"), "Tool", "Centre", shape={"name": "cylinder" if dim == 2 else "sphere", "radius": RADIUS * length},
+        position=place, mass=mass, inertia=inertia if dim == 2 else [inertia] * 3, facet_angle=5.0 if dim == 2 else 30.0)
     force = [MASS * GRAVITY * math.sin(ANGLE) * m.force_scale, 0.0, 0.0]
     force[last] = -MASS * GRAVITY * math.cos(ANGLE) * m.force_scale
     m.process("assign_vector_variable_to_conditions_process", {"model_part_name": "Structure.Centre", "variable_name": "POINT_LOAD",
         "value": [f"{f!r}*t/{END}" for f in force], "interval": [0.0, "End"]}, "loads")
-    contact = {"contact_model_part": {"0": ["Top", "Tool"]}, "assume_master_slave": {"0": ["Top"]}}
     s = solve(m, family, friction=0.6, time_step=time_step, end=END, dynamic={"scheme_type": "newmark"}, contact=contact)
     way = s.number("DISPLACEMENT_X of Structure.Centre") / length
     rolled = abs(s.number(("ROTATION_Z" if dim == 2 else "ROTATION_Y") + " of Structure.Centre"))

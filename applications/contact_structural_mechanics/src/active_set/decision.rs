@@ -38,7 +38,8 @@ impl<'a> Rules<'a> {
         Self { formulation: setup.settings.formulation, parameters: &setup.parameters, tolerances: setup.tolerances }
     }
 
-    /// Takes what laws of friction that depend on the sliding or the temperature, and of soft contact and of bonds, say in the present state of every slave node.
+    /// Takes what laws of friction that depend on the sliding or the temperature, and of soft contact and of bonds, say in the present
+    /// state of every slave node.
     pub(super) fn follow(self, part: &ModelPart, states: &mut SlaveStates, setup: &Setup) {
         let friction = Some(self.parameters.friction_law);
         let friction = friction.filter(|law| law.depends_on_sliding && self.formulation.frictional());

@@ -21,8 +21,9 @@ const LEAST_FREE: f64 = 1e-3;
 
 /// Finds the tangents of the slave nodes, and how they turn.
 ///
-/// Directions are those in the plane in which the limit of friction is a circle. The direction is that of the tangential multiplier of an active node. Where contact always slides it is that of the
-/// weighted slip. For sliding nodes in space, whose direction is more than a sign, and without multipliers it is that of the
+/// Directions are those in the plane in which the limit of friction is a circle. The direction is that of the tangential multiplier of
+/// an active node. Where contact always slides it is that of the weighted slip. For sliding nodes in space, whose direction is more than
+/// a sign, and without multipliers it is that of the
 /// trial traction. A node that has none of them above round-off keeps the direction it had: at step start that is a far
 /// better guess than any fixed tangent; so does one that always slides and turned back [`MOST_REVERSALS`] times in the step
 /// (`reversals` counts them): it stands still, and friction of either sign moves it the other way. In the plane sliding nodes
