@@ -211,22 +211,22 @@ class Model:
 
     # --- interfaces ---------------------------------------------------------------------------------------------------------
 
+    def _facets(self, body, side, *where):
+        """Conditions on a side of a body."""
+        return body.conditions(side, "Line" if self.dim == 2 else "Surface", *where)
+
     def interface(self, slave, master):
         """A pair of sides, each a (body, side) or (body, side, where); `where` chooses facets by their middle."""
-        family = "Line" if self.dim == 2 else "Surface"
-        return self.between(*(body.conditions(side, family, *where) for body, side, *where in (slave, master)))
+        return self.between(self._facets(*slave), self._facets(*master))
 
     def interface_with_shape(self, slave, tool, reference, **settings):
         """A pair of a side and a rigid shape, whose part and reference node are called so; what the contact process gets for it."""
-        body, side, *where = slave
-        made = body.conditions(side, "Line" if self.dim == 2 else "Surface", *where)
-        slaves = self._nodes_of(made)
-        self.mesh.part("Top", slaves, (), made)
-        self.pairs.append(("Top", "Top"))
-        self.watched[0] = sorted(slaves)
+        number = str(len(self.pairs))
+        self.between(self._facets(*slave), [])
+        interface, part = self.pairs[-1]
         self.process("rigid_shape_process", {"model_part_name": "Structure." + tool, "reference_model_part_name": "Structure." + reference,
             **settings})
-        return {"contact_model_part": {"0": ["Top", tool]}, "assume_master_slave": {"0": ["Top"]}}
+        return {"contact_model_part": {number: [interface, tool]}, "assume_master_slave": {number: [part]}}
 
     def between(self, slave, master):
         """A pair of lists of conditions; returns the slave's nodes."""
