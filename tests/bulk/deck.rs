@@ -1,12 +1,14 @@
 //! Decks of one body on a [`Grid`], written to a scratch folder and run.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use serde_json::{Value, json};
 use zelus::{RunOptions, RunReport, Silent, Simulation};
 use zelus_core::geometry::Shape;
 
 use super::grid::{Grid, Vec3};
+use super::thread_ranks::on_threads;
 
 /// A deck under construction.
 pub struct Deck<'a> {
@@ -22,6 +24,8 @@ pub struct Deck<'a> {
     conditions: Vec<(String, String, Vec<Vec<usize>>)>,
     processes: Vec<Value>,
     gauss: Vec<String>,
+    /// Heat beside the structure: its conductivity, and how both are coupled.
+    heat: Option<(f64, String)>,
 }
 
 /// Outcome of a run.
@@ -58,7 +62,14 @@ impl<'a> Deck<'a> {
             conditions: Vec::new(),
             processes: Vec::new(),
             gauss: Vec::new(),
+            heat: None,
         }
+    }
+
+    /// Steady heat of a conductivity in a part `Heat` beside the structure, coupled by a strategy.
+    pub fn with_heat(&mut self, conductivity: f64, strategy: &str) -> &mut Self {
+        self.heat = Some((conductivity, strategy.to_owned()));
+        self
     }
 
     /// Sets a key of the solver.
@@ -272,9 +283,27 @@ impl<'a> Deck<'a> {
         let path = folder.path().join("ProjectParameters.json");
         let mut simulation = Simulation::open(&path, &RunOptions::default()).expect("a deck");
         let result = simulation.run(&mut Silent);
-        let text = std::fs::read_to_string(folder.path().join("results.json"));
+        let ran = self.ran(folder.path(), simulation.into_report(), &result);
+        (result, ran)
+    }
+
+    fn ran(&self, folder: &Path, report: RunReport, result: &zelus_core::Result<()>) -> Ran {
+        let text = std::fs::read_to_string(folder.join("results.json"));
         let text = text.unwrap_or_else(|_| panic!("{}: no results: {result:?}", self.element));
-        (result, Ran { json: serde_json::from_str(&text).expect("JSON"), report: simulation.into_report() })
+        Ran { json: serde_json::from_str(&text).expect("JSON"), report }
+    }
+
+    /// As [`Deck::run`], on so many ranks, which are threads.
+    pub fn run_on_ranks(&self, count: usize) -> Ran {
+        let folder = self.write();
+        let path = folder.path().join("ProjectParameters.json");
+        let reports = on_threads(count, |ranks| {
+            let options = RunOptions { threads: Some(1), ranks, ..RunOptions::default() };
+            let mut simulation = Simulation::open(&path, &options).expect("a deck");
+            simulation.run(&mut Silent).expect("a run");
+            simulation.into_report()
+        });
+        self.ran(folder.path(), reports.into_iter().next().expect("a rank"), &Ok(()))
     }
 
     /// Problem of a deck that must not pass its check.
@@ -293,12 +322,25 @@ impl<'a> Deck<'a> {
             "python_module": "json_output_process", "kratos_module": "KratosMultiphysics", "Parameters": {
                 "output_file_name": "results.json", "model_part_name": "Structure", "time_frequency": 0.0,
                 "output_variables": self.outputs, "gauss_points_output_variables": self.gauss}}));
-        let deck = json!({
+        let mut deck = json!({
             "problem_data": {"problem_name": "bulk", "parallel_type": "OpenMP", "echo_level": 0, "start_time": 0.0,
                 "end_time": self.end_time},
             "solver_settings": self.solver,
             "processes": {"list": processes}});
         let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).expect("a file");
+        if let Some((conductivity, strategy)) = &self.heat {
+            let solver = deck["solver_settings"].take();
+            deck["solver_settings"] = json!({"solver_type": "ThermoMechanicallyCoupled", "domain_size": self.dim,
+                "coupling_settings": {"strategy": strategy}, "structural_solver_settings": solver,
+                "thermal_solver_settings": {"solver_type": "stationary", "stores_heat": false, "model_part_name": "Heat",
+                    "domain_size": self.dim, "model_import_settings": {"input_type": "use_input_model_part"},
+                    "material_import_settings": {"materials_filename": "heat.json"},
+                    "time_stepping": self.solver["time_stepping"].clone()}});
+            let variables = json!({"CONDUCTIVITY": conductivity, "DENSITY": 1.0, "SPECIFIC_HEAT": 1.0});
+            let heat = json!({"properties": [{"model_part_name": "Heat", "properties_id": 1,
+                "Material": {"Variables": variables, "Tables": {}}}]});
+            write("heat.json", heat.to_string());
+        }
         write("ProjectParameters.json", deck.to_string());
         write("materials.json", self.material.to_string());
         write("mesh.mdpa", self.mesh());

@@ -18,8 +18,11 @@ mod plastic;
 mod resultants;
 mod rigid_bodies;
 mod rigid_shapes;
+mod rigid_shapes_in_runs;
 mod rubber;
 mod springs;
 mod stress_results;
 mod supports;
+#[path = "../support/thread_ranks.rs"]
+mod thread_ranks;
 mod user_materials;

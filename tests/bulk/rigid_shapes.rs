@@ -9,11 +9,11 @@ use zelus_core::vector3::{add, cross, dot, norm, sub};
 use super::deck::{Deck, Ran, assert_close};
 use super::grid::{Grid, Vec3};
 
-const FREE: Value = Value::Null;
-const REFERENCE: &str = "Structure.Point";
-const TOOL: &str = "Structure.Tool";
+pub(super) const FREE: Value = Value::Null;
+pub(super) const REFERENCE: &str = "Structure.Point";
+pub(super) const TOOL: &str = "Structure.Tool";
 
-fn zero() -> Value {
+pub(super) fn zero() -> Value {
     json!(0.0)
 }
 
@@ -44,7 +44,7 @@ fn graded(shape: Shape, size: f64, [fine, coarse]: [usize; 2], far: f64) -> Grid
 }
 
 /// Contact of the side of a body with a tool of this shape at a position.
-fn contact(deck: &mut Deck<'_>, slave: &str, tool: Value, position: Vec3, more: Value) {
+pub(super) fn contact(deck: &mut Deck<'_>, slave: &str, tool: Value, position: Vec3, more: Value) {
     let mut settings = json!({"model_part_name": TOOL, "reference_model_part_name": REFERENCE, "shape": tool,
         "position": position});
     more.as_object().into_iter().flatten().for_each(|(key, value)| settings[key] = value.clone());
@@ -60,7 +60,7 @@ fn contact(deck: &mut Deck<'_>, slave: &str, tool: Value, position: Vec3, more: 
 }
 
 /// Prescribes displacement or rotation of the reference node, `null` leaving a component free.
-fn hold(deck: &mut Deck<'_>, variable: &str, value: [Value; 3]) {
+pub(super) fn hold(deck: &mut Deck<'_>, variable: &str, value: [Value; 3]) {
     let constrained: Vec<bool> = value.iter().map(|v| !v.is_null()).collect();
     let settings = json!({"model_part_name": REFERENCE, "variable_name": variable, "constrained": constrained,
         "value": value, "interval": [0.0, "End"]});
@@ -68,7 +68,7 @@ fn hold(deck: &mut Deck<'_>, variable: &str, value: [Value; 3]) {
 }
 
 /// A force on the reference node, which grows with t.
-fn press(deck: &mut Deck<'_>, force: Vec3) {
+pub(super) fn press(deck: &mut Deck<'_>, force: Vec3) {
     let value = force.map(|v| json!(format!("{v:?}*t")));
     let settings = json!({"model_part_name": REFERENCE, "variable_name": "POINT_LOAD", "value": value});
     deck.process("assign_vector_variable_to_conditions_process", settings);

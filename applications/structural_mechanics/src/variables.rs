@@ -9,6 +9,7 @@ register_variable! {
     pub REACTION: [f64; 3] = "Force of the supports on the node, of constraints where it is free: minus the residual (force).";
     pub NORMAL: [f64; 3] = "Outward unit normal of the surface at the node.";
     pub MIDDLE_VELOCITY: [f64; 3] = "Velocity half a step after VELOCITY, in explicit integration (length per time).";
+    pub MIDDLE_ANGULAR_VELOCITY: [f64; 3] = "Angular velocity half a step after ANGULAR_VELOCITY, in explicit integration (radian per time).";
     pub FORCE_RESIDUAL: [f64; 3] = "External minus internal forces that explicit integration accelerates (force).";
     pub POINT_LOAD: [f64; 3] = "Force on a point (force).";
     pub ROTATION: [f64; 3] = "Rotation vector of the reference node of a coupling (radian); other nodes have none.";
@@ -173,6 +174,7 @@ register_rates! { "DISPLACEMENT",
 register_rates! { "ROTATION",
     first: "ANGULAR_VELOCITY",
     second: Some("ANGULAR_ACCELERATION"),
+    middle: Some("MIDDLE_ANGULAR_VELOCITY"),
     reaction: Some("REACTION_MOMENT"),
     turns: Some("DISPLACEMENT"),
 }

@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::assembly::DofTable;
+use crate::assembly::{DofTable, impose_constraints};
 use crate::model::{ColumnOf, FIRST, ModelPart, Rates, SECOND, UNKNOWN};
 
 /// The first derivative half a step later.
@@ -33,13 +33,15 @@ impl CentralDifferences {
 
     /// Moves the unknowns by the step under `acceleration` (one number an unknown).
     ///
-    /// Unknowns for which `target` gives a value go there; their rates follow the motion.
+    /// Unknowns for which `target` gives a value go there, and those that a constraint `follows` go with their masters; their rates
+    /// follow the motion.
     pub fn advance(
         &mut self,
         part: &mut ModelPart,
         dofs: &DofTable,
         acceleration: &[f64],
         target: impl Fn(usize) -> Option<f64>,
+        follows: impl Fn(usize) -> bool,
     ) {
         let delta_time = part.info.delta_time;
         if !self.begun {
@@ -52,19 +54,23 @@ impl CentralDifferences {
         }
         let half = 0.5 * delta_time;
         let before = dofs.column(part, MIDDLE, 0);
-        let mut u = dofs.column(part, UNKNOWN, 0);
+        let start = dofs.column(part, UNKNOWN, 0);
+        let mut u = start.clone();
         let mut rates = [FIRST, SECOND, MIDDLE].map(|_| vec![0.0; dofs.len()]);
+        // Of a motion to a value.
+        let rates_to = |n: usize, value: f64| {
+            let (middle, next) = (before[n], (value - start[n]) / delta_time);
+            let acceleration = (next - middle) / (self.half_before + half);
+            [middle + self.half_before * acceleration, acceleration, next]
+        };
         for n in 0..dofs.len() {
-            let middle = before[n];
             let new = match target(n) {
                 Some(value) => {
-                    let next = (value - u[n]) / delta_time;
                     u[n] = value;
-                    let acceleration = (next - middle) / (self.half_before + half);
-                    [middle + self.half_before * acceleration, acceleration, next]
+                    rates_to(n, value)
                 }
                 None => {
-                    let velocity = middle + self.half_before * acceleration[n];
+                    let velocity = before[n] + self.half_before * acceleration[n];
                     let next = velocity + half * acceleration[n];
                     u[n] += delta_time * next;
                     [velocity, acceleration[n], next]
@@ -73,6 +79,13 @@ impl CentralDifferences {
             rates.iter_mut().zip(new).for_each(|(column, value)| column[n] = value);
         }
         dofs.write_column(part, UNKNOWN, 0, &u);
+        if !part.constraints.is_empty() {
+            impose_constraints(part);
+            let followed = dofs.column(part, UNKNOWN, 0);
+            for n in (0..dofs.len()).filter(|&n| follows(n)) {
+                rates.iter_mut().zip(rates_to(n, followed[n])).for_each(|(column, value)| column[n] = value);
+            }
+        }
         for (column, values) in [FIRST, SECOND, MIDDLE].into_iter().zip(&rates) {
             dofs.write_column(part, column, 0, values);
         }

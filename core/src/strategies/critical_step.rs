@@ -11,8 +11,8 @@ const MARGIN: f64 = 1.02;
 
 /// Estimates the longest stable step, 2/ω (√(1+ξ²) − ξ) with ξ = (α/ω + β ω)/2, in units of time.
 ///
-/// ω² is the largest eigenvalue of M⁻¹ K on the present equations, by power iteration; `mass` has a positive number an
-/// equation. Infinite without stiffness. Collective.
+/// ω² is the largest eigenvalue of M⁻¹ K on the present equations, by power iteration; `mass` has a number an
+/// equation; those without mass are taken for supported. Infinite without stiffness. Collective.
 pub fn critical_step(assembler: &Assembler, dofs: &DofTable, mass: &[f64], rayleigh: [f64; 2]) -> f64 {
     let equations = assembler.equations();
     // Any start will do that is the same for every number of ranks.
@@ -38,7 +38,7 @@ pub fn critical_step(assembler: &Assembler, dofs: &DofTable, mass: &[f64], rayle
         let motion = equations.expand(&x);
         let mut force = vec![0.0; motion.len()];
         assembler.subtract_product(&motion, &mut force);
-        x = equations.reduce(&force).iter().zip(mass).map(|(f, m)| f / m).collect();
+        x = equations.reduce(&force).iter().zip(mass).map(|(f, &m)| if m > 0.0 { f / m } else { 0.0 }).collect();
         let next = weighted(&x);
         let done = (next - square).abs() <= CHANGE * next;
         square = next;

@@ -18,9 +18,7 @@ use super::reactions::write_reactions;
 use super::records::{IterationRecord, Monitor, StepRecord};
 use super::scheme::{SchemeEntry, SchemeFactory};
 use super::strategy::{SolutionStrategy, accept, recorded};
-use crate::assembly::{
-    Assembler, AssemblerState, Inertia, System, damped_by_properties, impose_constraints, strongest_damping,
-};
+use crate::assembly::{Assembler, AssemblerState, Equations, Inertia, System, damped_by_properties, strongest_damping};
 use crate::diagnostics::{Diagnostic, Result, unfit};
 use crate::model::{ColumnOf, FIRST, ModelPart, Rates, SECOND};
 use crate::parameters::Settings;
@@ -89,6 +87,8 @@ pub struct ExplicitStrategy {
     assembler: Assembler,
     /// Lumped mass of each unknown, with the added one.
     mass: Vec<f64>,
+    /// Whether some rank has unknowns without mass, of nodes of no body.
+    has_massless: bool,
     /// Mass added to elements, once there is any.
     scaling: Option<MassScaling>,
     /// Whether the masses of the nodes are still to be written.
@@ -143,12 +143,21 @@ impl ExplicitStrategy {
         Rates::add(&mut part.nodes.history, &[OUT_OF_BALANCE]);
         let mass = assembler.lumped_mass(part, system)?;
         write_masses(part, system, &mass);
+        // Rigid shapes have unknowns without mass, at nodes of no body; supports and constraints hold them in each step.
+        let mut is_of_body = vec![false; part.nodes.len()];
+        let elements =
+            (0..part.elements.len() as u32).map(|at| part.elements.nodes(at)).filter(|nodes| nodes.len() > 1);
+        elements.flatten().for_each(|&node| is_of_body[node as usize] = true);
         let mut worst: Option<(usize, f64)> = None;
+        let mut has_massless = false;
         for (dof, &m) in system.dofs.dofs().iter().zip(&mass) {
-            if worst.is_none_or(|(_, smallest)| m < smallest) {
+            if m == 0.0 && !is_of_body[dof.node as usize] {
+                has_massless = true;
+            } else if worst.is_none_or(|(_, smallest)| m < smallest) {
                 worst = Some((part.nodes.ids[dof.node as usize], m));
             }
         }
+        let has_massless = part.ranks.any(has_massless);
         let massless = worst.filter(|(_, m)| *m <= 0.0).map(|(node, m)| format!("of node {node} is {m}"));
         if let Some(massless) = part.ranks.first_to_say(massless) {
             let fact = format!("the lumped mass {massless}, explicit integration needs a positive one");
@@ -161,6 +170,7 @@ impl ExplicitStrategy {
             scheme,
             assembler,
             mass,
+            has_massless,
             scaling: None,
             writes_masses: false,
             energy: ExplicitEnergy::default(),
@@ -228,6 +238,9 @@ impl ExplicitStrategy {
         let equations = self.assembler.equations();
         let force = equations.reduce(&residual);
         let mass = equations.lump(&self.mass);
+        if self.has_massless {
+            part.ranks.agree(only_massive(part, system, equations, &mass))?;
+        }
         let acceleration = equations.expand(&force.iter().zip(&mass).map(|(f, m)| f / m).collect::<Vec<f64>>());
         let start = self.assembler.values(part, system);
         let half = self.scheme.half_before().unwrap_or(0.5 * part.info.delta_time);
@@ -236,10 +249,8 @@ impl ExplicitStrategy {
             let follow = self.settings.follow_prescribed;
             equations.is_fixed(n).then(|| if follow { targets[n] } else { start[n] })
         };
-        self.scheme.advance(part, &system.dofs, &acceleration, target);
-        if !part.constraints.is_empty() {
-            impose_constraints(part);
-        }
+        let follows = |n: usize| !equations.is_free(n) && !equations.is_fixed(n);
+        self.scheme.advance(part, &system.dofs, &acceleration, target, follows);
         let increment =
             self.assembler.values(part, system).iter().zip(&start).map(|(now, before)| now - before).collect();
         let motion = ExplicitMotion { kinds: &kinds, residual: &residual, mass: &self.mass, increment, half };
@@ -338,6 +349,15 @@ fn write_masses(part: &mut ModelPart, system: &System, mass: &[f64]) {
             field.levels[0][dof.node as usize] = m;
         }
     }
+}
+
+/// # Errors
+/// A free unknown without mass: no force accelerates it by a number.
+fn only_massive(part: &ModelPart, system: &System, equations: &Equations, mass: &[f64]) -> Result<()> {
+    let Some((&number, _)) = equations.unknowns().iter().zip(mass).find(|(_, m)| **m <= 0.0) else { return Ok(()) };
+    let unknown = DofName::of(&system.dofs, &part.nodes, number);
+    let fact = format!("{unknown} is free and has no mass, and explicit integration needs one");
+    Err(Diagnostic::error("lumped-mass", fact).remedy("give it a support, or its node a mass").into())
 }
 
 /// # Errors

@@ -3,16 +3,22 @@
 //! Springs ε A of the slave nodes add to ω² of the bodies at most 2 ε max a/m over the nodes of the interfaces, with the area a of
 //! their facets that is a node's and its mass m: (B x)² ≤ ‖B‖₁ Σ |B_i| x_i² for the operator B of a node, whose entries add up to
 //! its area on either side. Steps Δt are stable below ω² = 4/Δt², of which the bodies take 4/Δt_c².
+//!
+//! A free rigid shape is one node of that kind: its area is that of the smaller side of its pair, and its mass m, or with a free rotation
+//! 1/(1/m + r²/J) with the farthest arm r of its facets.
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
 use zelus_core::geometry::parts;
-use zelus_core::model::ModelPart;
+use zelus_core::model::{MasterSlaveConstraint, ModelPart};
 use zelus_core::strategies::CRITICAL_STEP;
-use zelus_structural_mechanics::variables::{DISPLACEMENT, NODAL_MASS};
+use zelus_core::vector3::{norm, sub};
+use zelus_structural_mechanics::variables::{DISPLACEMENT, NODAL_MASS, ROTATION};
 
 use crate::flags::CONTACT;
-use crate::interface::Interface;
+use crate::interface::{Facet, Interface, Roles};
 use crate::slave_nodes::SlaveStates;
 use crate::variables::INITIAL_PENALTY;
 
@@ -78,19 +84,68 @@ fn note(step: f64, penalty: f64, most: f64) -> Diagnostic {
     Diagnostic::note("contact-step", fact)
 }
 
-/// Largest a/m of the nodes of the interfaces that can move, and their largest area.
+/// Largest a/m of the nodes and rigid shapes of the interfaces that can move, and the largest area of such nodes.
 fn load(part: &ModelPart, interfaces: &[Interface], revolution: Option<f64>) -> [f64; 2] {
-    let mut areas = vec![0.0; part.nodes.len()];
-    for facet in interfaces.iter().flat_map(|interface| &interface.facets) {
+    let ring = |node: u32| revolution.map_or(1.0, |factor| factor * part.nodes.current[node as usize][0].abs());
+    let shares = |facet: &Facet| {
         let size = facet.size(part);
-        let ring = |node: u32| revolution.map_or(1.0, |factor| factor * part.nodes.current[node as usize][0].abs());
-        for (local, &node) in facet.nodes.iter().enumerate() {
-            areas[node as usize] += size / parts(facet.shape, local) * ring(node);
-        }
+        let of_node = |(local, &node): (usize, &u32)| (node, size / parts(facet.shape, local) * ring(node));
+        facet.nodes.iter().enumerate().map(of_node).collect::<Vec<(u32, f64)>>()
+    };
+    let mut areas = vec![0.0; part.nodes.len()];
+    for (node, area) in interfaces.iter().flat_map(|interface| &interface.facets).flat_map(shares) {
+        areas[node as usize] += area;
     }
     let masses = part.nodes.values.values(&NODAL_MASS, 0);
-    let dimension = part.info.domain_size as u8;
-    let moves = |at: &usize| (0..dimension).any(|c| !part.nodes.is_fixed(DISPLACEMENT.component(c), *at as u32));
-    let nodes = (0..areas.len()).filter(|&at| areas[at] > 0.0 && masses[at] > 0.0).filter(moves);
-    nodes.fold([0.0, 0.0], |[load, area], at| [f64::max(load, areas[at] / masses[at]), f64::max(area, areas[at])])
+    let nodes = (0..areas.len()).filter(|&at| areas[at] > 0.0 && masses[at] > 0.0);
+    let nodes = nodes.filter(|&at| moves(part, at as u32));
+    let [of_nodes, area] =
+        nodes.fold([0.0, 0.0], |[load, area], at| [f64::max(load, areas[at] / masses[at]), f64::max(area, areas[at])]);
+    let side = |interface: &Interface, role: Roles| {
+        let own = interface.facets.iter().filter(|facet| facet.role == role);
+        own.flat_map(shares).map(|(_, area)| area).sum::<f64>()
+    };
+    let of_shapes = |interface: &Interface| {
+        let softness = softness_of_shapes(part, interface, masses);
+        if softness > 0.0 { softness * side(interface, Roles::Slave).min(side(interface, Roles::Master)) } else { 0.0 }
+    };
+    [interfaces.iter().map(of_shapes).fold(of_nodes, f64::max), area]
+}
+
+/// Whether a node may move.
+fn moves(part: &ModelPart, node: u32) -> bool {
+    (0..part.info.domain_size as u8).any(|c| !part.nodes.is_fixed(DISPLACEMENT.component(c), node))
+}
+
+/// Largest 1/m, or 1/m + r²/J, of the rigid shapes of an interface that move freely; 0 where there are none.
+fn softness_of_shapes(part: &ModelPart, interface: &Interface, masses: &[f64]) -> f64 {
+    let facets: Vec<&Facet> = interface.facets.iter().filter(|facet| facet.is_rigid()).collect();
+    if facets.is_empty() {
+        return 0.0;
+    }
+    let variable = DISPLACEMENT.component(0);
+    let followed = |own: &MasterSlaveConstraint| {
+        let ((master, _), _) = own.masters.iter().find(|((_, of), _)| own.slave.1 == variable && *of == variable)?;
+        Some((own.slave.0, *master))
+    };
+    let references: BTreeMap<u32, u32> = part.constraints.iter().filter_map(followed).collect();
+    let softness = |reference: u32| {
+        let arm = |node: u32| {
+            let [own, centre] = [node, reference].map(|node| part.nodes.initial[node as usize]);
+            norm(sub(own, centre))
+        };
+        let nodes = references.iter().filter(|(_, of)| **of == reference).map(|(node, _)| *node).chain([reference]);
+        let [mass, moment] = nodes.fold([0.0; 2], |[mass, moment], node| {
+            let own = masses[node as usize];
+            [mass + own, moment + own * arm(node) * arm(node)]
+        });
+        let rotations = if part.info.domain_size == 2 { 2..3 } else { 0..3 };
+        let rotates = rotations.into_iter().any(|c| !part.nodes.is_fixed(ROTATION.component(c), reference));
+        let own = facets.iter().flat_map(|facet| &facet.nodes).filter(|node| references.get(node) == Some(&reference));
+        let farthest = own.map(|&node| arm(node)).fold(0.0, f64::max);
+        let translation = if moves(part, reference) && mass > 0.0 { mass.recip() } else { 0.0 };
+        translation + if rotates && moment > 0.0 { farthest * farthest / moment } else { 0.0 }
+    };
+    let own: BTreeSet<u32> = facets.iter().filter_map(|facet| references.get(&facet.nodes[0]).copied()).collect();
+    own.into_iter().map(softness).fold(0.0, f64::max)
 }

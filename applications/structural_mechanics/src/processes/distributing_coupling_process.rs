@@ -16,7 +16,7 @@ use super::distributing_coupling::{DistributingCoupling, far_nodes};
 use super::kinematic_coupling::KinematicCoupling;
 use super::kinematic_coupling_process::{coupled_part, has_large_rotations, masses_at, prepare};
 use super::large_rotation::LargeRotation;
-use super::reference_node::{ReferenceNode, refuse_revolution, required};
+use super::reference_node::{ReferenceNode, refuse_explicit, refuse_revolution, required};
 use super::resultant::Resultant;
 use crate::variables::DISPLACEMENT;
 
@@ -35,6 +35,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let target = coupled_part(&settings, request.model)?;
     let part = request.model.root(&target.path)?;
     refuse_revolution(part, &target)?;
+    refuse_explicit(part, &target)?;
     let reference = ReferenceNode::new(&settings, part, &target)?;
     let resultant = Resultant::of(part, target.selection(&part.tree)?);
     if !(resultant.area > 0.0 && resultant.area.is_finite()) {

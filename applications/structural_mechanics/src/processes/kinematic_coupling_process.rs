@@ -12,7 +12,7 @@ use zelus_core::vector3::sub;
 use super::constraints_of_process::{couple, uncouple};
 use super::kinematic_coupling::KinematicCoupling;
 use super::large_rotation::LargeRotation;
-use super::reference_node::{self, PART, ReferenceNode, refuse_revolution, required};
+use super::reference_node::{self, PART, ReferenceNode, refuse_explicit, refuse_revolution, required};
 use super::rigid_body_mass::{self, add_to_mesh, part_of_masses};
 
 /// A coupling with its reference node.
@@ -38,6 +38,7 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let target = coupled_part(&settings, request.model)?;
     let part = request.model.root(&target.path)?;
     refuse_revolution(part, &target)?;
+    refuse_explicit(part, &target)?;
     let reference = ReferenceNode::new(&settings, part, &target)?;
     let wanted: [bool; 3] = settings.get("components")?.parse("components")?;
     let coupled: Vec<u8> = (0..part.info.domain_size as u8).filter(|&c| wanted[usize::from(c)]).collect();

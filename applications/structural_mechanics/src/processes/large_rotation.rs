@@ -115,7 +115,8 @@ impl Interaction for LargeRotation {
     }
 
     fn initialize(&mut self, part: &mut ModelPart) -> Result<()> {
-        self.stiffness = Some(self.make_stiffness(part)?);
+        // Explicit steps take no tangent.
+        self.stiffness = if part.info.solver.explicit { None } else { Some(self.make_stiffness(part)?) };
         Ok(())
     }
 

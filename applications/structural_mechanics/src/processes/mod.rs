@@ -9,6 +9,7 @@ mod bolt_pretension_process;
 mod rotation_vector;
 mod reference_node;
 mod rigid_body_mass;
+mod explicit_inertia;
 mod rotation_stiffness;
 mod large_rotation;
 mod kinematic_coupling;

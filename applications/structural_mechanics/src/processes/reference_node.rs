@@ -109,6 +109,19 @@ pub(super) fn refuse_revolution(part: &ModelPart, coupled: &Target) -> Result<()
     Err(problem.remedy("model the body in space").into())
 }
 
+/// Refuses a coupling in explicit steps, whose masses are those of nodes and not of a rigid body.
+///
+/// # Errors
+/// A model of explicit steps.
+pub(super) fn refuse_explicit(part: &ModelPart, coupled: &Target) -> Result<()> {
+    if !part.info.solver.explicit {
+        return Ok(());
+    }
+    let fact = "explicit steps have no inertia for rotations of a reference node";
+    let problem = Diagnostic::error("explicit-coupling", fact).at(coupled.place.clone());
+    Err(problem.remedy("use an implicit or a static solver").into())
+}
+
 pub(super) fn not_shared(part: &ModelPart, path: &str, place: &Place) -> Result<()> {
     if part.share.is_none() {
         return Ok(());
@@ -152,10 +165,6 @@ impl ReferenceNode {
         if others.contains(&node) {
             let fact = format!("the reference node {} belongs to {}", part.nodes.ids[node as usize], coupled.path);
             return Err(problem("reference-node", fact, "take it out of that part").into());
-        }
-        if part.info.solver.explicit {
-            let fact = "explicit steps have no inertia for rotations of a reference node".to_owned();
-            return Err(problem("explicit-coupling", fact, "use an implicit or a static solver").into());
         }
         let [u, theta] = components(part.info.domain_size);
         let wanted = [(&DISPLACEMENT, u), (&ROTATION, theta), (&REACTION, u), (&REACTION_MOMENT, theta)];

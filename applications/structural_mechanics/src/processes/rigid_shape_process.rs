@@ -12,6 +12,7 @@ use zelus_core::register;
 use zelus_core::registry::named;
 use zelus_core::vector3::{add, cross, dot, norm, scale, sub};
 
+use super::explicit_inertia::ExplicitInertia;
 use super::kinematic_coupling_process::{KinematicCouplingProcess, prepare_masses};
 use super::reference_node::{PART, POINT, ReferenceNode, not_shared, prepare_at};
 use super::rigid_shape_facets::{add_to_mesh, tell};
@@ -28,6 +29,7 @@ struct RigidShapeProcess {
     facets: ShapeFacets,
     /// Reference node of a model about an axis, which moves along the axis alone.
     on_axis: Option<u32>,
+    inertia: ExplicitInertia,
 }
 
 fn required(defaults: Defaults) -> Defaults {
@@ -152,11 +154,6 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let (path, place) = (settings.get_str("model_part_name")?.to_owned(), settings.key_place("model_part_name"));
     let part = request.model.root(&path).map_err(|error| error.at(&place))?;
     part.part(&path).map_err(|error| error.at(&place))?;
-    if part.share.is_some() {
-        let fact = "ranks share the mesh, and a rigid shape has its facets on one rank";
-        let problem = Diagnostic::error("rigid-shape-ranks", fact).at(place);
-        return Err(problem.remedy("run on one rank, with several threads").into());
-    }
     let space = space_of(part);
     let (facets, _) = shape(request, &settings, space)?;
     let part = request.model.root_mut(&path)?;
@@ -169,10 +166,11 @@ fn build(request: &mut ProcessRequest<'_>) -> Result<Box<dyn Process>> {
     let target = Target { path: path.clone(), interval: Interval::ALWAYS, place, process: settings.name().to_owned() };
     let reference = ReferenceNode::new(&settings, part, &target)?;
     let on_axis = (space == ShapeSpace::Revolution).then_some(reference.node);
+    let inertia = ExplicitInertia::of(&settings, part, &reference)?;
     let components = (0..part.info.domain_size as u8).collect();
     let large = settings.get_bool("large_rotations")?;
     let coupling = KinematicCouplingProcess::new(&settings, part, target, reference, (components, large))?;
-    Ok(Box::new(RigidShapeProcess { coupling, path, facets, on_axis }))
+    Ok(Box::new(RigidShapeProcess { coupling, path, facets, on_axis, inertia }))
 }
 
 impl Process for RigidShapeProcess {
@@ -196,6 +194,10 @@ impl Process for RigidShapeProcess {
     }
 
     fn constrain(&mut self, model: &mut Model) -> Result<()> {
+        let part = model.root(&self.path)?;
+        if part.info.solver.explicit {
+            self.inertia.check(part)?;
+        }
         self.coupling.constrain(model)
     }
 
