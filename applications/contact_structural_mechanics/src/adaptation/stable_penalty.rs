@@ -4,10 +4,10 @@
 //! their facets that is a node's and its mass m: (B x)² ≤ ‖B‖₁ Σ |B_i| x_i² for the operator B of a node, whose entries add up to
 //! its area on either side. Steps Δt are stable below ω² = 4/Δt², of which the bodies take 4/Δt_c².
 //!
-//! A free rigid shape is one node of that kind: its area is that of the smaller side of its pair, and its mass m, or with a free rotation
-//! 1/(1/m + r²/J) with the farthest arm r of its facets.
+//! A free rigid shape is one node of that kind: its area is the sum over its pairs of that of the smaller side, and its mass m, or with a
+//! free rotation 1/(1/m + r²/J) with the longest arm r of its facets.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 use zelus_core::diagnostics::Diagnostic;
@@ -18,7 +18,7 @@ use zelus_core::vector3::{norm, sub};
 use zelus_structural_mechanics::variables::{DISPLACEMENT, NODAL_MASS, ROTATION};
 
 use crate::flags::CONTACT;
-use crate::interface::{Facet, Interface, Roles};
+use crate::interface::{Facet, Interface};
 use crate::slave_nodes::SlaveStates;
 use crate::variables::INITIAL_PENALTY;
 
@@ -101,15 +101,9 @@ fn load(part: &ModelPart, interfaces: &[Interface], revolution: Option<f64>) -> 
     let nodes = nodes.filter(|&at| moves(part, at as u32));
     let [of_nodes, area] =
         nodes.fold([0.0, 0.0], |[load, area], at| [f64::max(load, areas[at] / masses[at]), f64::max(area, areas[at])]);
-    let side = |interface: &Interface, role: Roles| {
-        let own = interface.facets.iter().filter(|facet| facet.role == role);
-        own.flat_map(shares).map(|(_, area)| area).sum::<f64>()
-    };
-    let of_shapes = |interface: &Interface| {
-        let softness = softness_of_shapes(part, interface, masses);
-        if softness > 0.0 { softness * side(interface, Roles::Slave).min(side(interface, Roles::Master)) } else { 0.0 }
-    };
-    [interfaces.iter().map(of_shapes).fold(of_nodes, f64::max), area]
+    let area_of = |facet: &Facet| shares(facet).iter().map(|(_, area)| area).sum();
+    let of_shapes = touched_shapes(part, interfaces, area_of).into_values();
+    [of_shapes.map(|shape| shape.area * shape.softness(part, masses)).fold(of_nodes, f64::max), area]
 }
 
 /// Whether a node may move.
@@ -117,11 +111,47 @@ fn moves(part: &ModelPart, node: u32) -> bool {
     (0..part.info.domain_size as u8).any(|c| !part.nodes.is_fixed(DISPLACEMENT.component(c), node))
 }
 
-/// Largest 1/m, or 1/m + r²/J, of the rigid shapes of an interface that move freely; 0 where there are none.
-fn softness_of_shapes(part: &ModelPart, interface: &Interface, masses: &[f64]) -> f64 {
-    let facets: Vec<&Facet> = interface.facets.iter().filter(|facet| facet.is_rigid()).collect();
-    if facets.is_empty() {
-        return 0.0;
+/// A rigid shape in contact pairs.
+#[derive(Debug, Default)]
+struct TouchedShape {
+    reference: u32,
+    /// Nodes that follow the reference node: of facets, and of masses.
+    followers: Vec<u32>,
+    /// Largest distance of its facets from the reference node (length).
+    arm: f64,
+    /// Most that the other sides of its pairs can touch (area).
+    area: f64,
+}
+
+impl TouchedShape {
+    /// 1/m + r²/J of the motions that supports leave it, of a body without mass 0 (1/mass).
+    fn softness(&self, part: &ModelPart, masses: &[f64]) -> f64 {
+        let nodes = self.followers.iter().chain([&self.reference]);
+        let [mass, moment] = nodes.fold([0.0; 2], |[mass, moment], &node| {
+            let own = masses[node as usize];
+            [mass + own, moment + own * arm(part, node, self.reference).powi(2)]
+        });
+        let mut rotations = if part.info.domain_size == 2 { 2..3 } else { 0..3 };
+        let rotates = rotations.any(|c| !part.nodes.is_fixed(ROTATION.component(c), self.reference));
+        let translation = if moves(part, self.reference) && mass > 0.0 { mass.recip() } else { 0.0 };
+        translation + if rotates && moment > 0.0 { self.arm * self.arm / moment } else { 0.0 }
+    }
+}
+
+/// Distance of two nodes in the initial geometry (length).
+fn arm(part: &ModelPart, node: u32, other: u32) -> f64 {
+    norm(sub(part.nodes.initial[node as usize], part.nodes.initial[other as usize]))
+}
+
+/// The rigid shapes of the interfaces, by their reference nodes, with the areas of all their pairs.
+fn touched_shapes(
+    part: &ModelPart,
+    interfaces: &[Interface],
+    area_of: impl Fn(&Facet) -> f64,
+) -> BTreeMap<u32, TouchedShape> {
+    let mut shapes = BTreeMap::<u32, TouchedShape>::new();
+    if !interfaces.iter().flat_map(|interface| &interface.facets).any(Facet::is_rigid) {
+        return shapes;
     }
     let variable = DISPLACEMENT.component(0);
     let followed = |own: &MasterSlaveConstraint| {
@@ -129,23 +159,23 @@ fn softness_of_shapes(part: &ModelPart, interface: &Interface, masses: &[f64]) -
         Some((own.slave.0, *master))
     };
     let references: BTreeMap<u32, u32> = part.constraints.iter().filter_map(followed).collect();
-    let softness = |reference: u32| {
-        let arm = |node: u32| {
-            let [own, centre] = [node, reference].map(|node| part.nodes.initial[node as usize]);
-            norm(sub(own, centre))
-        };
-        let nodes = references.iter().filter(|(_, of)| **of == reference).map(|(node, _)| *node).chain([reference]);
-        let [mass, moment] = nodes.fold([0.0; 2], |[mass, moment], node| {
-            let own = masses[node as usize];
-            [mass + own, moment + own * arm(node) * arm(node)]
-        });
-        let rotations = if part.info.domain_size == 2 { 2..3 } else { 0..3 };
-        let rotates = rotations.into_iter().any(|c| !part.nodes.is_fixed(ROTATION.component(c), reference));
-        let own = facets.iter().flat_map(|facet| &facet.nodes).filter(|node| references.get(node) == Some(&reference));
-        let farthest = own.map(|&node| arm(node)).fold(0.0, f64::max);
-        let translation = if moves(part, reference) && mass > 0.0 { mass.recip() } else { 0.0 };
-        translation + if rotates && moment > 0.0 { farthest * farthest / moment } else { 0.0 }
-    };
-    let own: BTreeSet<u32> = facets.iter().filter_map(|facet| references.get(&facet.nodes[0]).copied()).collect();
-    own.into_iter().map(softness).fold(0.0, f64::max)
+    for interface in interfaces {
+        let (rigid, others): (Vec<&Facet>, Vec<&Facet>) = interface.facets.iter().partition(|facet| facet.is_rigid());
+        let mut own = BTreeMap::<u32, f64>::new();
+        for facet in rigid {
+            let Some(&reference) = references.get(&facet.nodes[0]) else { continue };
+            let shape = shapes.entry(reference).or_default();
+            shape.reference = reference;
+            shape.arm = facet.nodes.iter().map(|&node| arm(part, node, reference)).fold(shape.arm, f64::max);
+            *own.entry(reference).or_default() += area_of(facet);
+        }
+        let other: f64 = others.into_iter().map(&area_of).sum();
+        for (reference, area) in own {
+            shapes.entry(reference).or_default().area += area.min(other);
+        }
+    }
+    for (&node, reference) in &references {
+        shapes.entry(*reference).and_modify(|shape| shape.followers.push(node));
+    }
+    shapes
 }

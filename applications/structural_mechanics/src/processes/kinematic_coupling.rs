@@ -81,14 +81,16 @@ impl KinematicCoupling {
             return;
         }
         let space = part.info.domain_size;
+        // Explicit steps begin from the present level, which no prediction overwrites.
+        let levels = if part.info.solver.explicit { 0..=START } else { START..=START };
         let nodes = self.arms.iter().map(|arm| (arm, &*self.coupled));
         for (&(node, arm), coupled) in nodes.chain(self.masses.iter().map(|arm| (arm, components(space)[0]))) {
             let by_spin = cross(omega, arm);
             let inward = if large { cross(omega, by_spin) } else { [0.0; 3] };
             let acceleration = add(add(a, cross(alpha, arm)), inward);
             for (variable, value) in [(&VELOCITY, add(v, by_spin)), (&ACCELERATION, acceleration)] {
-                for &c in coupled {
-                    history.set_value(variable.component(c), node as usize, START, value[usize::from(c)]);
+                for (level, &c) in levels.clone().flat_map(|level| coupled.iter().map(move |c| (level, c))) {
+                    history.set_value(variable.component(c), node as usize, level, value[usize::from(c)]);
                 }
             }
         }
