@@ -20,6 +20,7 @@ mod rigid_bodies;
 mod rigid_shapes;
 mod rigid_shapes_in_runs;
 mod rubber;
+mod rubber_roller;
 mod springs;
 mod stress_results;
 mod supports;

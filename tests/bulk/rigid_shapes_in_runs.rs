@@ -25,8 +25,8 @@ fn outcome(ran: &Ran, grid: &Grid) -> BTreeMap<String, Vec<f64>> {
     out
 }
 
-/// The same iterations on one, two and three ranks, and the same results. Tolerance: sums over ranks in another order, 1e-11 as measured, of
-/// moments in those of forces with an arm of 1, of rotations in those of displacements.
+/// The same iterations on one, two and three ranks, and the same results. Tolerance: sums over ranks in another order, 1e-11 as measured,
+/// of moments in those of forces with an arm of 1, of rotations in those of displacements.
 fn equal_on_ranks(deck: &Deck<'_>, grid: &Grid, what: &str) {
     let alone = deck.run();
     assert!(outcome(&alone, grid)["REACTION"].iter().any(|force| force.abs() > 1e-3), "{what}: no contact");
@@ -57,7 +57,7 @@ fn equal_to_ranks(alone: &Ran, deck: &Deck<'_>, grid: &Grid, what: &str) {
 }
 
 /// Sets a formulation of contact for the process that was added last.
-fn formulation(deck: &mut Deck<'_>, kind: &str, friction: &str) {
+pub(super) fn formulation(deck: &mut Deck<'_>, kind: &str, friction: &str) {
     deck.set("contact_settings", json!({"mortar_type": format!("{kind}Contact{friction}")}));
     deck.last_process()["contact_type"] = json!(friction);
     let process = deck.processes_mut().last_mut().expect("the process of contact");
@@ -342,9 +342,9 @@ fn a_plane_is_as_a_held_ground_in_explicit_steps() {
     assert!((0..=last).any(|step| energies(&shaped, step).penalty > 1e-6), "no contact");
 }
 
-/// ANALYTIC: a rigid plane with a mass that strikes a bar at rest keeps the momentum of both to round-off, whether its rotation is held or free
-/// with inertia; moved with a constant speed v it throws the bar with 2 v, as above. Energy is kept to 1 % in steps that resolve how contact opens
-/// and closes: 0.1 % as measured.
+/// ANALYTIC: a rigid plane with a mass that strikes a bar at rest keeps the momentum of both to round-off, whether its rotation is held
+/// or free with inertia; moved with a constant speed v it throws the bar with 2 v, as above. Energy is kept to 1 % in steps that resolve
+/// how contact opens and closes: 0.1 % as measured.
 #[test]
 fn a_moving_plane_strikes_a_bar_in_explicit_steps() {
     let (width, speed, mass) = (0.1, 0.2, 0.05);
@@ -375,9 +375,8 @@ fn a_moving_plane_strikes_a_bar_in_explicit_steps() {
     assert_close(thrown, 2.0 * speed, 0.04, "speed of a bar that a plane throws");
 }
 
-/// ANALYTIC: a plane that strikes a bar beside its centre of mass turns, and both keep their momentum, to round-off, and its moment about the
-/// origin. Tolerance of that:
-/// facets follow the tangent of a rotation in a step. The same on ranks.
+/// ANALYTIC: a plane that strikes a bar beside its centre of mass turns, and both keep their momentum, to round-off, and its moment about
+/// the origin. Tolerance of that: facets follow the tangent of a rotation in a step. The same on ranks.
 #[test]
 fn a_plane_strikes_beside_its_centre_in_explicit_steps() {
     let (width, at, speed, mass, inertia) = (0.1, 0.3, 0.2, 0.05, 0.02);
@@ -442,8 +441,8 @@ fn pairs_share_the_penalty_that_a_shape_bears() {
     assert!(off < 1e-9 * most, "{off:e} of {most:e}");
 }
 
-/// ANALYTIC: no force moves a plane with mass and inertia at the constant velocity that it begins with, nor turns it about its centre of mass.
-/// To round-off of its inertia over a step.
+/// ANALYTIC: no force moves a plane with mass and inertia at the constant velocity that it begins with, nor turns it about its centre of
+/// mass. To round-off of its inertia over a step.
 #[test]
 fn no_force_keeps_a_shape_in_motion_in_explicit_steps() {
     let grid = Grid::new(Shape::Quad4, &[2, 2], |p| [p[0] - 0.5, p[1] + 1.0, 0.0]);
