@@ -37,8 +37,7 @@ impl Reduced {
         let layout = Layout {
             node: equations.iter().map(|&e| whole.node[e as usize]).collect(),
             multiplier: equations.iter().map(|&e| whole.multiplier[e as usize]).collect(),
-            near_null_space: Vec::new(),
-            inactive: Vec::new(),
+            ..Layout::default()
         };
         Self { layout, bulk: matrix(system.bulk), coupling: system.coupling.map(matrix), equations }
     }

@@ -30,6 +30,9 @@ pub struct Layout {
     pub multiplier: Vec<bool>,
     /// Vectors the bulk nearly maps to zero (rigid-body modes), for multigrid; may be empty.
     pub near_null_space: Vec<Vec<f64>>,
+    /// Linear interpolation of the unknowns from those at corners of elements, for multigrid: rows of nodes between corners have the
+    /// shares of these, those of all others one in their own column. Without nodes between corners it has no rows.
+    pub corner_interpolation: Csr,
     /// Inactive rows (Dirichlet): solvers skip their rows, columns and right-hand sides, and return zero there. Empty where there are
     /// none. For solvers that say so ([`LinearSolver::takes_inactive_rows`](crate::LinearSolver::takes_inactive_rows)).
     pub inactive: Vec<bool>,

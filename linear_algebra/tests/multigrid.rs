@@ -271,7 +271,7 @@ fn inactive_rows(cells: usize, is_inactive: impl Fn(usize, &Layout) -> bool) -> 
             .iter()
             .map(|vector| equations.iter().map(|&i| vector[i]).collect())
             .collect(),
-        inactive: Vec::new(),
+        ..Layout::default()
     };
     let left = Contact { bulk: matrix(&whole.bulk), coupling: matrix(&whole.coupling), layout };
     InactiveRows { whole, left, equations }

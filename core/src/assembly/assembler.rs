@@ -148,7 +148,7 @@ impl Assembler {
         self.reduced_bulk.update(equations, self.bulk.matrix(), self.bulk.values(), self.stamps.of_bulk());
         let coupling = self.coupling.matrix();
         self.reduced_coupling.update(equations, coupling, Some(&coupling.values), self.stamps.of_coupling());
-        self.equations.complete_near_null_space();
+        self.equations.complete_layout();
         self.seconds.bulk += start.elapsed().as_secs_f64();
     }
 

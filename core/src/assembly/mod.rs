@@ -2,6 +2,7 @@
 
 mod assembler;
 mod bulk_matrix;
+mod corner_interpolation;
 mod distribution;
 mod dof_table;
 mod equations;

@@ -108,6 +108,7 @@ impl DistributedRows {
             motion
         };
         self.layout.near_null_space = self.motions.iter().map(pad).collect();
+        self.layout.corner_interpolation = system.layout.corner_interpolation.clone();
         let (own, ghosts) = (numbering.own.clone(), places.ghosts(numbering));
         self.ghosts = Some(Ghosts::new(Arc::new(ranks.clone()), own, places.len(), ghosts));
     }

@@ -58,10 +58,9 @@ impl PetscCondensation {
         places.sort_unstable();
         places.dedup();
         let layout = Layout {
-            inactive: Vec::new(),
             node: seen.iter().map(|number| places.partition_point(|&p| p < known[number].0) as u32).collect(),
             multiplier: seen.iter().map(|number| known[number].1).collect(),
-            near_null_space: Vec::new(),
+            ..Layout::default()
         };
         let triplets: Vec<(usize, usize, f64)> = entries.iter().map(|&(r, c, value)| (at(r), at(c), value)).collect();
         let matrix = Csr::from_triplets(seen.len(), &triplets);

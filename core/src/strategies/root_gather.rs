@@ -72,10 +72,10 @@ impl AllEquations {
         let place = |(dof_name, at): (&DofName, _)| (!dof_name.multiplier).then_some((dof_name.variable, at));
         let places: Vec<DofPosition> = self.dof_names.iter().zip(positions).map(place).collect();
         self.layout = Layout {
-            inactive: Vec::new(),
             node: sorted().map(|row| row[0] as u32).collect(),
             multiplier: self.dof_names.iter().map(|dof_name| dof_name.multiplier).collect(),
             near_null_space: near_null_space(&places),
+            ..Layout::default()
         };
     }
 }

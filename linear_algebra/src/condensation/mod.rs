@@ -163,7 +163,6 @@ impl Condensation {
         Ok(Self {
             matrix,
             layout: Layout {
-                inactive: Vec::new(),
                 node: kept.iter().map(|&i| layout.node[i as usize]).collect(),
                 multiplier: vec![false; kept.len()],
                 near_null_space: layout
@@ -171,6 +170,7 @@ impl Condensation {
                     .iter()
                     .map(|vector| kept.iter().map(|&i| vector[i as usize]).collect())
                     .collect(),
+                ..Layout::default()
             },
             symmetry: if touched { Symmetry::General } else { system.bulk_symmetry },
             kept,

@@ -92,6 +92,16 @@ struct Coarsest {
     counts: Vec<usize>,
 }
 
+/// The coarse space of corners on a mesh of second order.
+pub(super) struct Corners<'a> {
+    /// Number of each own block at a corner, and the modes there.
+    pub(super) space: Tentative,
+    pub(super) rows: InterpolationRows<'a>,
+}
+
+/// Calls its argument with a slot of an own block, the place of an unknown of a corner and a factor, for all of these.
+type InterpolationRows<'a> = &'a (dyn Fn(usize, &mut dyn FnMut(usize, u32, f64)) + Sync);
+
 /// The hierarchy.
 #[derive(Serialize, Deserialize)]
 #[serde(try_from = "SavedMultigrid")]
@@ -135,14 +145,25 @@ impl TryFrom<SavedMultigrid> for Multigrid {
 
 impl Multigrid {
     /// Builds the hierarchy on the own rows of `matrix`, whose near-null vectors have one entry for each of them; no coarse
-    /// motion is one of two bodies, and `bodies` says which each block is of. Collective.
+    /// motion is one of two bodies, and `bodies` says which each block is of. Where the mesh is of second order the first coarse space is
+    /// that of its `corners`. Collective.
     pub(super) fn new(
         mut matrix: Arc<BlockMatrix>,
         mut bodies: Vec<u32>,
         mut near_null_space: Vec<Vec<f64>>,
         mut ghosts: Ghosts,
+        corners: Option<Corners<'_>>,
     ) -> Self {
         let mut levels: Vec<Level> = Vec::new();
+        let is_large = |matrix: &BlockMatrix, ghosts: &Ghosts| {
+            ghosts.total((matrix.rows * matrix.height) as f64) as usize > COARSEST
+        };
+        if let Some(Corners { mut space, rows }) = corners.filter(|_| is_large(&matrix, &ghosts)) {
+            (bodies, near_null_space) = (std::mem::take(&mut space.bodies), std::mem::take(&mut space.modes));
+            let (level, next, of_next) = Level::of_corners(matrix, ghosts, space, rows);
+            levels.push(level);
+            (matrix, ghosts) = (Arc::new(next), of_next);
+        }
         loop {
             let equations = ghosts.total((matrix.rows * matrix.height) as f64) as usize;
             if equations <= COARSEST || levels.len() >= LEVELS {
@@ -295,7 +316,40 @@ impl Level {
             };
         let (shape, blocks) = ([matrix.rows, aggregates.all()], [height, width]);
         let scratch = || (vec![0.0; size + BESIDE], ProductRow::new([height, height, width]), Vec::new());
-        let mut prolongation = BlockMatrix::from_rows_with(shape, blocks, NOTHING_EARLIER, scratch, smoothed);
+        let prolongation = BlockMatrix::from_rows_with(shape, blocks, NOTHING_EARLIER, scratch, smoothed);
+        Self::with(matrix, ghosts, (inverse, radius), aggregates, prolongation)
+    }
+
+    /// A level with linear interpolation from corners, the matrix of the next one, and who has its blocks.
+    fn of_corners(
+        matrix: Arc<BlockMatrix>,
+        ghosts: Ghosts,
+        mut space: Tentative,
+        rows: InterpolationRows<'_>,
+    ) -> (Self, BlockMatrix, Ghosts) {
+        let mut aggregates = Aggregates::new(&ghosts, space.aggregates);
+        aggregates.complete(&ghosts, &mut space, 0);
+        let (w, number) = (matrix.height, &space.aggregate);
+        let prolongation = BlockMatrix::from_rows([matrix.rows, aggregates.all()], [w; 2], |i, row| {
+            rows(i, &mut |slot, place, factor| {
+                let (block, of_corner) = (place as usize / w, place as usize % w);
+                if number[block] != NONE {
+                    row.block(number[block])[of_corner * w + slot] += factor as f32;
+                }
+            });
+        });
+        let bounds = spectrum(&matrix, &ghosts);
+        Self::with(matrix, ghosts, bounds, aggregates, prolongation)
+    }
+
+    /// A level with this prolongation.
+    fn with(
+        matrix: Arc<BlockMatrix>,
+        ghosts: Ghosts,
+        (inverse, radius): (Vec<f32>, f32),
+        aggregates: Aggregates,
+        mut prolongation: BlockMatrix,
+    ) -> (Self, BlockMatrix, Ghosts) {
         let mut restriction = prolongation.transpose();
         let (next, of_next) = aggregates.product(&ghosts, &matrix, &mut prolongation, &mut restriction);
         (Self { matrix, inverse, radius, prolongation, restriction, ghosts }, next, of_next)

@@ -2,6 +2,7 @@
 
 use zelus_linear_algebra::{Layout, parallel};
 
+use crate::assembly::corner_interpolation::corner_interpolation;
 use crate::assembly::near_null_space::near_null_space;
 use crate::assembly::rows::ROWS;
 use crate::assembly::{Dof, Equations, System};
@@ -51,6 +52,7 @@ impl StepEquations {
                 false => near_null_space(&parallel::map(dofs.len(), ROWS, |at| place(&dofs[at]))),
                 true => Vec::new(),
             },
+            corner_interpolation: corner_interpolation(part, &system.dofs),
             inactive: parallel::map(dofs.len(), ROWS, |number| !self.map.is_free(number)),
         };
     }
@@ -60,8 +62,11 @@ impl StepEquations {
         self.map.take_forces(map);
     }
 
-    /// Gives the layout of the equations the near null space of all unknowns, where it lacks it.
-    pub fn complete_near_null_space(&mut self) {
+    /// Gives the layout of the equations the near null space and the interpolation of all unknowns, where it lacks them.
+    pub fn complete_layout(&mut self) {
+        if self.map.layout.corner_interpolation.rows == 0 {
+            self.map.layout.corner_interpolation = self.map.motions(&self.whole.corner_interpolation);
+        }
         if self.map.layout.near_null_space.len() != self.whole.near_null_space.len() {
             let of = |vector: &Vec<f64>| self.map.unknowns().iter().map(|&n| vector[n as usize]).collect();
             self.map.layout.near_null_space = self.whole.near_null_space.iter().map(of).collect();

@@ -13,12 +13,13 @@
 //! iterations and no accuracy.
 
 mod apply;
+mod corners;
 mod elimination;
 mod group;
 mod reduced_blocks;
 
 use super::blocks::Blocks;
-use super::multigrid_hierarchy::Multigrid;
+use super::multigrid_hierarchy::{Corners, Multigrid};
 use crate::components::Components;
 use crate::ghosts::{Ghosts, Owned};
 use crate::parallel;
@@ -395,11 +396,9 @@ impl Constrained {
 
     /// The hierarchy of the reduced system; collective.
     pub(crate) fn hierarchy(&self, system: &System<'_>, left: &Blocks) -> Multigrid {
-        Multigrid::new(
-            left.matrix.clone(),
-            self.bodies(system, left),
-            self.near_null_space(system),
-            self.blocks.clone(),
-        )
+        let bodies = self.bodies(system, left);
+        let rows = |block: usize, add: &mut dyn FnMut(usize, u32, f64)| self.interpolate(system, block, add);
+        let corners = self.corners(system, &bodies).map(|space| Corners { space, rows: &rows });
+        Multigrid::new(left.matrix.clone(), bodies, self.near_null_space(system), self.blocks.clone(), corners)
     }
 }

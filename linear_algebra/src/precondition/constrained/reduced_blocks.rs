@@ -235,21 +235,25 @@ impl Constrained {
         Blocks { matrix, size: largest, of_bulk, ghosts: self.blocks.clone() }
     }
 
-    /// The near-null space of the layout on own blocks; translations where it has none.
-    pub(super) fn near_null_space(&self, system: &System<'_>) -> Vec<Vec<f64>> {
-        let mut on_blocks: Vec<Vec<f64>> = if system.layout.near_null_space.is_empty() {
+    /// The near-null space of the layout on blocks; translations where it has none.
+    pub(super) fn rigid_body_modes(&self, system: &System<'_>) -> Vec<Vec<f64>> {
+        if system.layout.near_null_space.is_empty() {
             let alike = |k: usize| {
                 let is_set = |at: usize| at % self.width == k && self.equation[at] != NONE;
                 parallel::map(self.equation.len(), CHUNK, |at| f64::from(u8::from(is_set(at))))
             };
-            (0..self.width).map(alike).collect()
-        } else {
-            let of = |vector: &Vec<f64>| {
-                let value = |e: u32| if e == NONE { 0.0 } else { vector[e as usize] };
-                parallel::map(self.equation.len(), CHUNK, |at| value(self.equation[at]))
-            };
-            system.layout.near_null_space.iter().map(of).collect()
+            return (0..self.width).map(alike).collect();
+        }
+        let of = |vector: &Vec<f64>| {
+            let value = |e: u32| if e == NONE { 0.0 } else { vector[e as usize] };
+            parallel::map(self.equation.len(), CHUNK, |at| value(self.equation[at]))
         };
+        system.layout.near_null_space.iter().map(of).collect()
+    }
+
+    /// The near-null space of the reduced system on own blocks.
+    pub(super) fn near_null_space(&self, system: &System<'_>) -> Vec<Vec<f64>> {
+        let mut on_blocks = self.rigid_body_modes(system);
         parallel::each_mut(&mut on_blocks, 1, |_, vector| {
             for group in &self.groups {
                 let free = group.tangential();
