@@ -37,10 +37,21 @@ const ARNOLDI_STEPS: usize = 5;
 const SAFETY: f32 = 1.1;
 /// Squarings of the matrix that Arnoldi's iteration leaves: its radius is then known to a thousandth.
 const SQUARINGS: usize = 11;
-/// Polynomial degree of the smoother.
-const DEGREE: usize = 2;
-/// Share of the spectrum that the smoother damps, counted from above.
-const DAMPED_FROM: f32 = 0.1;
+
+/// What a level leaves to the smoother.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+struct Smoother {
+    /// Polynomial degree.
+    degree: usize,
+    /// Where the part of the spectrum begins that it damps, as a share of the upper bound.
+    damped_from: f32,
+}
+
+/// Above aggregates, which are three blocks wide.
+const ABOVE_AGGREGATES: Smoother = Smoother { degree: 2, damped_from: 0.1 };
+/// Above the corners of second-order cells, which are closer: a narrower part is left, and many blocks are at one end of an edge each,
+/// so that low degrees leave much of it.
+const ABOVE_CORNERS: Smoother = Smoother { degree: 3, damped_from: 0.3 };
 
 #[derive(Serialize)]
 struct Level {
@@ -51,6 +62,7 @@ struct Level {
     /// Upper bound of the spectrum of `D⁻¹ A`.
     #[serde(skip)]
     radius: f32,
+    smoother: Smoother,
     prolongation: BlockMatrix,
     #[serde(skip)]
     restriction: BlockMatrix,
@@ -63,15 +75,16 @@ struct Level {
 #[derive(Deserialize)]
 struct SavedLevel {
     matrix: Arc<BlockMatrix>,
+    smoother: Smoother,
     prolongation: BlockMatrix,
 }
 
 impl From<SavedLevel> for Level {
-    fn from(SavedLevel { matrix, prolongation }: SavedLevel) -> Self {
+    fn from(SavedLevel { matrix, smoother, prolongation }: SavedLevel) -> Self {
         let ghosts = Ghosts::none(matrix.rows);
         let (inverse, radius) = spectrum(&matrix, &ghosts);
         let restriction = prolongation.transpose();
-        Self { matrix, inverse, radius, prolongation, restriction, ghosts }
+        Self { matrix, inverse, radius, smoother, prolongation, restriction, ghosts }
     }
 }
 
@@ -128,7 +141,7 @@ impl TryFrom<SavedMultigrid> for Multigrid {
     fn try_from(SavedMultigrid { levels, last }: SavedMultigrid) -> Result<Self, Self::Error> {
         let matrices: Vec<&BlockMatrix> = levels.iter().map(|level| &*level.matrix).chain([&*last]).collect();
         let fits = |(level, below): (&SavedLevel, &&BlockMatrix)| {
-            let SavedLevel { matrix, prolongation } = level;
+            let SavedLevel { matrix, prolongation, .. } = level;
             (prolongation.rows, prolongation.height) == (matrix.rows, matrix.height)
                 && (prolongation.columns, prolongation.width) == (below.rows, below.height)
                 && prolongation.is_sound()
@@ -317,7 +330,7 @@ impl Level {
         let (shape, blocks) = ([matrix.rows, aggregates.all()], [height, width]);
         let scratch = || (vec![0.0; size + BESIDE], ProductRow::new([height, height, width]), Vec::new());
         let prolongation = BlockMatrix::from_rows_with(shape, blocks, NOTHING_EARLIER, scratch, smoothed);
-        Self::with(matrix, ghosts, (inverse, radius), aggregates, prolongation)
+        Self::with(matrix, ghosts, (inverse, radius), ABOVE_AGGREGATES, aggregates, prolongation)
     }
 
     /// A level with linear interpolation from corners, the matrix of the next one, and who has its blocks.
@@ -339,25 +352,27 @@ impl Level {
             });
         });
         let bounds = spectrum(&matrix, &ghosts);
-        Self::with(matrix, ghosts, bounds, aggregates, prolongation)
+        Self::with(matrix, ghosts, bounds, ABOVE_CORNERS, aggregates, prolongation)
     }
 
-    /// A level with this prolongation.
+    /// A level with this smoother, given the spectrum, and this prolongation.
     fn with(
         matrix: Arc<BlockMatrix>,
         ghosts: Ghosts,
         (inverse, radius): (Vec<f32>, f32),
+        smoother: Smoother,
         aggregates: Aggregates,
         mut prolongation: BlockMatrix,
     ) -> (Self, BlockMatrix, Ghosts) {
         let mut restriction = prolongation.transpose();
         let (next, of_next) = aggregates.product(&ghosts, &matrix, &mut prolongation, &mut restriction);
-        (Self { matrix, inverse, radius, prolongation, restriction, ghosts }, next, of_next)
+        (Self { matrix, inverse, radius, smoother, prolongation, restriction, ghosts }, next, of_next)
     }
 
     /// Chebyshev iteration on the upper part of the spectrum of `D⁻¹ A`.
     fn smooth(&self, vectors: &mut Vectors, from_zero: bool) {
-        let (low, high) = (DAMPED_FROM * self.radius, self.radius);
+        let Smoother { degree, damped_from } = self.smoother;
+        let (low, high) = (damped_from * self.radius, self.radius);
         let (middle, half) = (0.5 * (high + low), 0.5 * (high - low));
         let sigma = middle / half;
         let mut rho = 1.0 / sigma;
@@ -365,7 +380,7 @@ impl Level {
         if from_zero {
             vector::clear(x);
         }
-        for k in 0..DEGREE {
+        for k in 0..degree {
             let factors = if k == 0 {
                 [0.0, 1.0 / middle]
             } else {

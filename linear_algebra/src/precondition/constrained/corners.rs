@@ -36,7 +36,8 @@ impl Constrained {
         if count > LARGEST_SHARE * all {
             return None;
         }
-        let of_corners = |vector: &Vec<f64>| corners.iter().flat_map(|&b| &vector[b * w..(b + 1) * w]).copied().collect();
+        let of_corners =
+            |vector: &Vec<f64>| corners.iter().flat_map(|&b| &vector[b * w..(b + 1) * w]).copied().collect();
         let modes = self.rigid_body_modes(system).iter().map(of_corners).collect();
         let bodies = corners.iter().map(|&block| bodies[block]).collect();
         Some(Tentative { aggregate, aggregates: corners.len(), bodies, values: Vec::new(), modes })
@@ -49,7 +50,8 @@ impl Constrained {
         for (slot, &e) in equations {
             let group = self.group_of[e as usize];
             let (columns, values) = self.interpolation(system, e);
-            let corners = columns.iter().map(|&j| self.place[j as usize]).zip(values).filter(|(place, _)| *place != NONE);
+            let corners =
+                columns.iter().map(|&j| self.place[j as usize]).zip(values).filter(|(place, _)| *place != NONE);
             for (place, &value) in corners {
                 if group == NONE {
                     add(slot, place, value);
