@@ -27,7 +27,7 @@ fn main() {
     let threads = arguments.next().unwrap_or(0);
     rayon::ThreadPoolBuilder::new().num_threads(threads).build_global().expect("a pool");
 
-    let brick = Brick { cells: [cells; 3] };
+    let brick = Brick::of_cubes([cells; 3]);
     let mut triplets = Vec::new();
     brick.stiffness(0, 1.0, &mut triplets);
     fix(&mut triplets, brick.layer(0).into_iter().flat_map(|node| 3 * node..3 * node + 3), 1.0);

@@ -67,7 +67,7 @@ fn pressed(
     off: f64,
     without: impl Fn(usize, usize) -> bool,
 ) -> Sample {
-    let (lower, upper) = (Brick { cells: [n; 3] }, Brick { cells: [n; 3] });
+    let (lower, upper) = (Brick::of_cubes([n; 3]), Brick::of_cubes([n; 3]));
     let (young, nodes) = (1e5, lower.nodes() + upper.nodes());
     let mut bulk = Vec::new();
     lower.stiffness(0, young, &mut bulk);

@@ -12,7 +12,7 @@ fn right_hand_side(n: usize) -> Vec<f64> {
 }
 
 fn clamped_box(cells: usize) -> (Csr, Layout) {
-    let brick = Brick { cells: [cells; 3] };
+    let brick = Brick::of_cubes([cells; 3]);
     let mut triplets = Vec::new();
     brick.stiffness(0, 1.0, &mut triplets);
     fix(&mut triplets, brick.layer(0).into_iter().flat_map(|node| 3 * node..3 * node + 3), 1.0);
@@ -285,7 +285,7 @@ fn the_bulk_of_an_interface_need_not_be_definite_or_symmetric() {
 
 #[test]
 fn an_interface_may_move() {
-    let brick = Brick { cells: [7; 3] };
+    let brick = Brick::of_cubes([7; 3]);
     let (bulk, layout) = clamped_box(7);
     let n = bulk.rows;
     let mut solver = direct(9000);
@@ -326,8 +326,8 @@ fn odd_graphs_are_factorised() {
 
 #[test]
 fn a_singular_matrix_names_its_equations() {
-    let brick = Brick { cells: [6, 6, 6] };
-    let loose = Brick { cells: [2, 2, 2] };
+    let brick = Brick::of_cubes([6, 6, 6]);
+    let loose = Brick::of_cubes([2, 2, 2]);
     let mut triplets = Vec::new();
     brick.stiffness(0, 1.0, &mut triplets);
     loose.stiffness(brick.nodes(), 1.0, &mut triplets);

@@ -3,6 +3,7 @@
 use std::cmp::Reverse;
 
 use super::block_matrix::BlockMatrix;
+use super::lines::Lines;
 use crate::parallel;
 
 /// Aggregate of a block that has no strong neighbour.
@@ -69,6 +70,25 @@ impl Strong {
         Self { parts: parallel::map(matrix.rows.div_ceil(ROWS), 1, of_task) }
     }
 
+    /// The couplings between lines, and blocks that are in none; `unit` says which of these a block is or is in.
+    fn between(&self, unit: &[u32], units: usize) -> Self {
+        let mut members: Vec<Vec<u32>> = vec![Vec::new(); units];
+        unit.iter().enumerate().for_each(|(block, &unit)| members[unit as usize].push(block as u32));
+        let of_task = |task: usize| {
+            let (mut ends, mut lists) = (Vec::with_capacity(ROWS), Vec::<u32>::new());
+            for own in task * ROWS..((task + 1) * ROWS).min(units) {
+                let near = members[own].iter().flat_map(|&block| self.of(block as usize));
+                let mut near: Vec<u32> = near.map(|&j| unit[j as usize]).filter(|&j| j as usize != own).collect();
+                near.sort_unstable();
+                near.dedup();
+                lists.extend(near);
+                ends.push(lists.len() as u32);
+            }
+            (ends, lists)
+        };
+        Self { parts: parallel::map(units.div_ceil(ROWS), 1, of_task) }
+    }
+
     /// Strong neighbours of a block.
     fn of(&self, g: usize) -> &[u32] {
         let (ends, lists) = &self.parts[g / ROWS];
@@ -77,23 +97,41 @@ impl Strong {
     }
 }
 
-/// Aggregate of each block, and their number; blocks without strong neighbours have none. A hub, e.g. the reference node of a coupling, is
-/// an aggregate alone: joined with all it is coupled to, it would make a coarse node of a whole surface.
-fn aggregate(matrix: &BlockMatrix, bodies: &[u32]) -> (Vec<u32>, usize) {
+/// Which blocks are hubs, e.g. the reference node of a coupling.
+pub(super) fn hubs(matrix: &BlockMatrix) -> Vec<bool> {
     let blocks: usize = (0..matrix.rows).map(|i| matrix.row(i).0.len()).sum();
     let is_hub = |i| {
         let length = matrix.row(i).0.len();
         length > HUB && length * matrix.rows > LONGER * blocks
     };
-    let is_hub: Vec<bool> = (0..matrix.rows).map(is_hub).collect();
+    (0..matrix.rows).map(is_hub).collect()
+}
+
+/// Aggregate of each block, and their number; blocks without strong neighbours have none. A hub is an aggregate alone: joined with all it
+/// is coupled to, it would make a coarse node of a whole surface. Lines stay whole.
+fn aggregate(matrix: &BlockMatrix, bodies: &[u32], lines: &Lines) -> (Vec<u32>, usize) {
+    let is_hub = hubs(matrix);
     let strong = Strong::new(matrix, bodies, &is_hub);
-    let mut of = vec![NONE; matrix.rows];
+    if lines.count() == 0 {
+        return aggregate_units(&strong, &is_hub);
+    }
+    let (unit, units) = lines.units(matrix.rows);
+    let mut hubs = vec![false; units];
+    unit.iter().zip(&is_hub).for_each(|(&unit, &is_hub)| hubs[unit as usize] |= is_hub);
+    let (of, count) = aggregate_units(&strong.between(&unit, units), &hubs);
+    (unit.iter().map(|&unit| of[unit as usize]).collect(), count)
+}
+
+/// The same for units of blocks with these couplings.
+fn aggregate_units(strong: &Strong, is_hub: &[bool]) -> (Vec<u32>, usize) {
+    let units = is_hub.len();
+    let mut of = vec![NONE; units];
     let mut count = 0;
-    for g in (0..matrix.rows).filter(|&g| is_hub[g]) {
+    for g in (0..units).filter(|&g| is_hub[g]) {
         of[g] = count;
         count += 1;
     }
-    for g in 0..matrix.rows {
+    for g in 0..units {
         let near = strong.of(g);
         if of[g] == NONE && !near.is_empty() && near.iter().all(|&h| of[h as usize] == NONE) {
             of[g] = count;
@@ -101,8 +139,8 @@ fn aggregate(matrix: &BlockMatrix, bodies: &[u32]) -> (Vec<u32>, usize) {
             count += 1;
         }
     }
-    join(&mut of, count as usize, &strong);
-    for g in 0..matrix.rows {
+    join(&mut of, count as usize, strong);
+    for g in 0..units {
         if of[g] == NONE && !strong.of(g).is_empty() {
             of[g] = count;
             for &h in strong.of(g) {
@@ -134,9 +172,9 @@ fn join(of: &mut [u32], aggregates: usize, strong: &Strong) {
     }
 }
 
-/// The tentative coarse space of the own rows of a matrix with these near-null vectors, and a body for each block.
-pub(super) fn coarsen(matrix: &BlockMatrix, bodies: &[u32], near_null_space: &[Vec<f64>]) -> Tentative {
-    let (aggregate, aggregates) = aggregate(matrix, bodies);
+/// The tentative coarse space of the own rows of a matrix with these lines and near-null vectors, and a body for each block.
+pub(super) fn coarsen(matrix: &BlockMatrix, bodies: &[u32], lines: &Lines, near_null_space: &[Vec<f64>]) -> Tentative {
+    let (aggregate, aggregates) = aggregate(matrix, bodies, lines);
     let (height, modes) = (matrix.height, near_null_space.len());
     let mut members = vec![Vec::new(); aggregates];
     // Place of each block among the members of its aggregate.
@@ -222,7 +260,7 @@ mod tests {
                 row.block(points as u32)[0] = -1.0;
             }
         });
-        let (of, count) = aggregate(&chain, &vec![0; points + 1]);
+        let (of, count) = aggregate(&chain, &vec![0; points + 1], &Lines::default());
         assert_eq!(of.iter().filter(|&&a| a == of[points]).count(), 1);
         assert_eq!(count, 1 + points / 3);
         assert!(of.iter().all(|&a| a != NONE));
@@ -235,6 +273,6 @@ mod tests {
         let full = BlockMatrix::from_rows([points; 2], [1, 1], |i, row| {
             (0..points).for_each(|j| row.block(j as u32)[0] = if i == j { points as f32 } else { -1.0e3 });
         });
-        assert_eq!(aggregate(&full, &vec![0; points]).1, 1);
+        assert_eq!(aggregate(&full, &vec![0; points], &Lines::default()).1, 1);
     }
 }

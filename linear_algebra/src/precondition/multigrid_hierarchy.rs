@@ -8,17 +8,17 @@
 
 use std::sync::{Arc, Mutex};
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
-use super::aggregation::{NONE, Tentative, coarsen};
+use super::aggregation::{self, NONE, Tentative};
 use super::block_matrix::{BlockMatrix, Into, NOTHING_EARLIER};
 use super::block_row::BlockRow;
+use super::lines::{Inverses, Lines};
 use super::multiplier::BESIDE;
 use super::product_row::ProductRow;
 use super::shared_levels::{Aggregates, gathered};
 use super::single_precision::in_single;
 use crate::check;
-use crate::dense_lu;
 use crate::ghosts::Ghosts;
 use crate::memory;
 use crate::multifrontal::{Factor, Factorization, Precision, Scatter};
@@ -56,9 +56,9 @@ const ABOVE_CORNERS: Smoother = Smoother { degree: 3, damped_from: 0.3 };
 #[derive(Serialize)]
 struct Level {
     matrix: Arc<BlockMatrix>,
-    /// Inverse diagonal blocks, by rows.
-    #[serde(skip)]
-    inverse: Vec<f32>,
+    /// `D⁻¹`.
+    #[serde(serialize_with = "as_lines")]
+    lines: Inverses,
     /// Upper bound of the spectrum of `D⁻¹ A`.
     #[serde(skip)]
     radius: f32,
@@ -71,20 +71,26 @@ struct Level {
     ghosts: Ghosts,
 }
 
+/// The lines from which inverses are made again.
+fn as_lines<S: Serializer>(inverses: &Inverses, to: S) -> Result<S::Ok, S::Error> {
+    inverses.lines().serialize(to)
+}
+
 /// Data from which a level of one rank is restored.
 #[derive(Deserialize)]
 struct SavedLevel {
     matrix: Arc<BlockMatrix>,
+    lines: Lines,
     smoother: Smoother,
     prolongation: BlockMatrix,
 }
 
 impl From<SavedLevel> for Level {
-    fn from(SavedLevel { matrix, smoother, prolongation }: SavedLevel) -> Self {
+    fn from(SavedLevel { matrix, lines, smoother, prolongation }: SavedLevel) -> Self {
         let ghosts = Ghosts::none(matrix.rows);
-        let (inverse, radius) = spectrum(&matrix, &ghosts);
+        let (lines, radius) = spectrum(&matrix, lines, &ghosts);
         let restriction = prolongation.transpose();
-        Self { matrix, inverse, radius, smoother, prolongation, restriction, ghosts }
+        Self { matrix, lines, radius, smoother, prolongation, restriction, ghosts }
     }
 }
 
@@ -94,6 +100,8 @@ struct Vectors {
     b: Vec<f32>,
     x: Vec<f32>,
     step: Vec<f32>,
+    /// Work space of lines.
+    of_lines: Vec<f32>,
 }
 
 /// The last level, which every rank has whole.
@@ -141,10 +149,11 @@ impl TryFrom<SavedMultigrid> for Multigrid {
     fn try_from(SavedMultigrid { levels, last }: SavedMultigrid) -> Result<Self, Self::Error> {
         let matrices: Vec<&BlockMatrix> = levels.iter().map(|level| &*level.matrix).chain([&*last]).collect();
         let fits = |(level, below): (&SavedLevel, &&BlockMatrix)| {
-            let SavedLevel { matrix, prolongation, .. } = level;
+            let SavedLevel { matrix, lines, prolongation, .. } = level;
             (prolongation.rows, prolongation.height) == (matrix.rows, matrix.height)
                 && (prolongation.columns, prolongation.width) == (below.rows, below.height)
                 && prolongation.is_sound()
+                && lines.is_sound(matrix.rows)
         };
         let square =
             |matrix: &&BlockMatrix| (matrix.rows, matrix.height) == (matrix.columns, matrix.width) && matrix.is_sound();
@@ -172,23 +181,27 @@ impl Multigrid {
             ghosts.total((matrix.rows * matrix.height) as f64) as usize > COARSEST
         };
         if let Some(Corners { mut space, rows }) = corners.filter(|_| is_large(&matrix, &ghosts)) {
+            let lines = lines_of(&matrix, &bodies);
             (bodies, near_null_space) = (std::mem::take(&mut space.bodies), std::mem::take(&mut space.modes));
-            let (level, next, of_next) = Level::of_corners(matrix, ghosts, space, rows);
+            let (level, next, of_next) = Level::of_corners(matrix, lines, ghosts, space, rows);
             levels.push(level);
             (matrix, ghosts) = (Arc::new(next), of_next);
         }
+        let of_nodes = levels.len();
         loop {
             let equations = ghosts.total((matrix.rows * matrix.height) as f64) as usize;
             if equations <= COARSEST || levels.len() >= LEVELS {
                 break;
             }
-            let mut coarse = coarsen(&matrix, &bodies, &near_null_space);
+            // Couplings of aggregates, which are of motions of unlike units, show no lines.
+            let lines = if levels.len() == of_nodes { lines_of(&matrix, &bodies) } else { Lines::default() };
+            let mut coarse = aggregation::coarsen(&matrix, &bodies, &lines, &near_null_space);
             let aggregates = ghosts.total(coarse.aggregates as f64) as usize;
             if aggregates == 0 || aggregates * near_null_space.len() * 4 > equations * 3 {
                 break;
             }
             (bodies, near_null_space) = (std::mem::take(&mut coarse.bodies), std::mem::take(&mut coarse.modes));
-            let (level, next, of_next) = Level::new(matrix, ghosts, coarse, near_null_space.len());
+            let (level, next, of_next) = Level::new(matrix, lines, ghosts, coarse, near_null_space.len());
             levels.push(level);
             (matrix, ghosts) = (Arc::new(next), of_next);
             if ghosts.ranks().is_some() {
@@ -202,10 +215,10 @@ impl Multigrid {
     fn of(levels: Vec<Level>, last: Arc<BlockMatrix>, ghosts: Ghosts) -> Self {
         let (whole, rows) = gathered(&ghosts, &last);
         let counts = rows.iter().map(|rows| rows * last.height).collect();
-        let shapes = levels.iter().map(|level| (&level.ghosts, level.matrix.height)).chain([(&ghosts, last.height)]);
-        let vectors = shapes.map(|(ghosts, height)| {
+        let of_levels = levels.iter().map(|level| (&level.ghosts, level.matrix.height, level.lines.work()));
+        let vectors = of_levels.chain([(&ghosts, last.height, 0)]).map(|(ghosts, height, work)| {
             let (all, own) = (ghosts.all() * height, ghosts.own() * height);
-            Vectors { b: vec![0.0; all], x: vec![0.0; all], step: vec![0.0; own] }
+            Vectors { b: vec![0.0; all], x: vec![0.0; all], step: vec![0.0; own], of_lines: vec![0.0; work] }
         });
         let vectors = Mutex::new(vectors.collect());
         let coarsest = Coarsest { factor: factorise(&whole), ghosts, counts };
@@ -249,7 +262,7 @@ impl Multigrid {
 }
 
 impl Coarsest {
-    fn solve(&self, Vectors { b, x, step }: &mut Vectors) {
+    fn solve(&self, Vectors { b, x, step, .. }: &mut Vectors) {
         let own: Vec<f64> = b[..step.len()].iter().map(|&b| f64::from(b)).collect();
         let (mut all, first) = match self.ghosts.ranks() {
             None => (own, 0),
@@ -292,50 +305,78 @@ impl Level {
     /// A level with this tentative prolongation to blocks of `width`, the matrix of the next one, and who has its blocks.
     fn new(
         matrix: Arc<BlockMatrix>,
+        lines: Lines,
         ghosts: Ghosts,
         mut coarse: Tentative,
         width: usize,
     ) -> (Self, BlockMatrix, Ghosts) {
-        let (inverse, radius) = spectrum(&matrix, &ghosts);
+        let (lines, radius) = spectrum(&matrix, lines, &ghosts);
         let omega = 4.0 / 3.0 * SAFETY / radius;
         let height = matrix.height;
         let (size, wide) = (height * height, height * width);
         let mut aggregates = Aggregates::new(&ghosts, coarse.aggregates);
         aggregates.complete(&ghosts, &mut coarse, wide);
         let (aggregate, tentative) = (&coarse.aggregate, &coarse.values);
+        let (shape, blocks) = ([matrix.rows, aggregates.all()], [height, width]);
+        let of = |k: usize| &tentative[k * wide..(k + 1) * wide];
+        let product_of = |i: usize, row: &mut BlockRow, product: &mut ProductRow| {
+            let (columns, values) = matrix.row_and_beside(i);
+            for (at, &k) in columns.iter().enumerate() {
+                let a = aggregate[k as usize];
+                if a != NONE {
+                    product.add(row, &[a], &values[at * size..], of(k as usize));
+                }
+            }
+            product.write(row);
+        };
+        // The rows of A T that those of blocks in lines are made of.
+        let places = if lines.lines().count() == 0 { Vec::new() } else { lines.lines().places(matrix.rows) };
+        let place = |i: usize| places.get(i).copied().flatten();
+        let product = || ProductRow::new([height, height, width]);
+        let of_lines = (!places.is_empty()).then(|| {
+            BlockMatrix::from_rows_with(shape, blocks, NOTHING_EARLIER, product, |i, row, product| {
+                if place(i).is_some() {
+                    product_of(i, row, product);
+                }
+            })
+        });
         // T - ω D⁻¹ (A T).
         let smoothed =
             |i: usize, row: &mut BlockRow, (damping, product, before): &mut (Vec<f32>, ProductRow, Vec<f32>)| {
-                let (columns, values) = matrix.row_and_beside(i);
-                let of = |k: usize| &tentative[k * wide..(k + 1) * wide];
-                for (at, &k) in columns.iter().enumerate() {
-                    let a = aggregate[k as usize];
-                    if a != NONE {
-                        product.add(row, &[a], &values[at * size..], of(k as usize));
+                match (place(i), &of_lines) {
+                    (Some((line, at)), Some(products)) => {
+                        for (next, &block) in lines.lines().blocks(line as usize).iter().enumerate() {
+                            lines.scaled_block(line as usize, [at as usize, next], -omega, damping);
+                            let (columns, values) = products.row_and_beside(block as usize);
+                            product.add(row, columns, damping, values);
+                        }
+                    }
+                    _ => {
+                        product_of(i, row, product);
+                        let inverse = &lines.of_blocks()[i * size..(i + 1) * size];
+                        for h in 0..height {
+                            (0..height).for_each(|l| damping[l * height + h] = -omega * inverse[h * height + l]);
+                        }
+                        before.clear();
+                        before.extend_from_slice(row.entries());
+                        product.add_to_each(row, damping, before);
                     }
                 }
-                let inverse = &inverse[i * size..(i + 1) * size];
-                for h in 0..height {
-                    (0..height).for_each(|l| damping[l * height + h] = -omega * inverse[h * height + l]);
-                }
-                product.write(row);
-                before.clear();
-                before.extend_from_slice(row.entries());
-                product.add_to_each(row, damping, before);
                 product.write(row);
                 if aggregate[i] != NONE {
                     row.block(aggregate[i]).iter_mut().zip(of(i)).for_each(|(sum, t)| *sum += t);
                 }
             };
-        let (shape, blocks) = ([matrix.rows, aggregates.all()], [height, width]);
-        let scratch = || (vec![0.0; size + BESIDE], ProductRow::new([height, height, width]), Vec::new());
+        let scratch = || (vec![0.0; size + BESIDE], product(), Vec::new());
         let prolongation = BlockMatrix::from_rows_with(shape, blocks, NOTHING_EARLIER, scratch, smoothed);
-        Self::with(matrix, ghosts, (inverse, radius), ABOVE_AGGREGATES, aggregates, prolongation)
+        drop(of_lines);
+        Self::with(matrix, ghosts, (lines, radius), ABOVE_AGGREGATES, aggregates, prolongation)
     }
 
     /// A level with linear interpolation from corners, the matrix of the next one, and who has its blocks.
     fn of_corners(
         matrix: Arc<BlockMatrix>,
+        lines: Lines,
         ghosts: Ghosts,
         mut space: Tentative,
         rows: InterpolationRows<'_>,
@@ -351,7 +392,7 @@ impl Level {
                 }
             });
         });
-        let bounds = spectrum(&matrix, &ghosts);
+        let bounds = spectrum(&matrix, lines, &ghosts);
         Self::with(matrix, ghosts, bounds, ABOVE_CORNERS, aggregates, prolongation)
     }
 
@@ -359,14 +400,14 @@ impl Level {
     fn with(
         matrix: Arc<BlockMatrix>,
         ghosts: Ghosts,
-        (inverse, radius): (Vec<f32>, f32),
+        (lines, radius): (Inverses, f32),
         smoother: Smoother,
         aggregates: Aggregates,
         mut prolongation: BlockMatrix,
     ) -> (Self, BlockMatrix, Ghosts) {
         let mut restriction = prolongation.transpose();
         let (next, of_next) = aggregates.product(&ghosts, &matrix, &mut prolongation, &mut restriction);
-        (Self { matrix, inverse, radius, smoother, prolongation, restriction, ghosts }, next, of_next)
+        (Self { matrix, lines, radius, smoother, prolongation, restriction, ghosts }, next, of_next)
     }
 
     /// Chebyshev iteration on the upper part of the spectrum of `D⁻¹ A`.
@@ -376,7 +417,7 @@ impl Level {
         let (middle, half) = (0.5 * (high + low), 0.5 * (high - low));
         let sigma = middle / half;
         let mut rho = 1.0 / sigma;
-        let Vectors { b, x, step } = vectors;
+        let Vectors { b, x, step, of_lines } = vectors;
         if from_zero {
             vector::clear(x);
         }
@@ -392,12 +433,17 @@ impl Level {
             if k == 0 {
                 vector::clear(step);
             }
-            if k == 0 && from_zero {
-                diagonal_step(&self.inverse, self.matrix.height, b, factors[1], step);
-            } else {
+            if k > 0 || !from_zero {
                 self.ghosts.spread(x, self.matrix.height);
-                self.matrix.smoothing_step(&self.inverse, b, x, factors, step);
             }
+            self.lines.step(factors[0], step, of_lines, |step| {
+                let inverses = self.lines.of_blocks();
+                if k == 0 && from_zero {
+                    diagonal_step(inverses, self.matrix.height, b, factors[1], step);
+                } else {
+                    self.matrix.smoothing_step(inverses, b, x, factors, step);
+                }
+            });
             add_scaled(1.0, step, &mut x[..step.len()]);
         }
     }
@@ -414,53 +460,25 @@ fn diagonal_step(inverse: &[f32], height: usize, b: &[f32], gain: f32, step: &mu
     });
 }
 
-/// Inverses of the diagonal blocks, by rows; tiny pivots are lifted, so that they always exist.
-fn inverse_diagonal(matrix: &BlockMatrix) -> Vec<f32> {
-    let h = matrix.height;
-    let mut out = vec![0.0; matrix.rows * h * h];
-    let invert = |(lu, column): &mut (Vec<f64>, Vec<f64>), i: usize, out: &mut [f32]| {
-        let (columns, values) = matrix.row(i);
-        let Ok(at) = columns.binary_search(&(i as u32)) else { return };
-        let block = &values[at * h * h..(at + 1) * h * h];
-        lu.clear();
-        lu.extend(block.iter().map(|&v| f64::from(v)));
-        let largest = lu.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        if largest == 0.0 {
-            return;
-        }
-        for k in 0..h {
-            if (0..h).all(|l| lu[k + h * l] == 0.0) {
-                lu[k + h * k] = largest;
-            }
-        }
-        let pivots = dense_lu::factorise(lu, h, 1e-6 * largest);
-        for w in 0..h {
-            column.fill(0.0);
-            column[w] = 1.0;
-            dense_lu::solve(lu, h, &pivots, column);
-            (0..h).for_each(|k| out[k * h + w] = column[k] as f32);
-        }
-    };
-    parallel::parts_mut(&mut out, 256 * h * h, &|first, out| {
-        let mut memory = (Vec::with_capacity(h * h), vec![0.0; h]);
-        out.chunks_exact_mut(h * h).zip(first / (h * h)..).for_each(|(out, i)| invert(&mut memory, i, out));
-    });
-    out
+/// Lines among the own blocks of a matrix.
+fn lines_of(matrix: &BlockMatrix, bodies: &[u32]) -> Lines {
+    let hubs = aggregation::hubs(matrix);
+    Lines::new(matrix, bodies, |i| !hubs[i])
 }
 
-/// Inverse diagonal blocks, and the upper bound of the spectrum of `D⁻¹ A`; collective.
-fn spectrum(matrix: &BlockMatrix, ghosts: &Ghosts) -> (Vec<f32>, f32) {
-    let inverse = inverse_diagonal(matrix);
-    let radius = SAFETY * spectral_radius(matrix, &inverse, ghosts);
-    (inverse, radius)
+/// The inverse of the diagonal blocks with these lines, and the upper bound of the spectrum of `D⁻¹ A`; collective.
+fn spectrum(matrix: &BlockMatrix, lines: Lines, ghosts: &Ghosts) -> (Inverses, f32) {
+    let inverses = Inverses::new(matrix, lines);
+    let radius = SAFETY * spectral_radius(matrix, &inverses, ghosts);
+    (inverses, radius)
 }
 
 /// Spectral radius of `D⁻¹ A` by Arnoldi's iteration, from below.
-fn spectral_radius(matrix: &BlockMatrix, inverse: &[f32], ghosts: &Ghosts) -> f32 {
+fn spectral_radius(matrix: &BlockMatrix, inverses: &Inverses, ghosts: &Ghosts) -> f32 {
     let n = matrix.rows * matrix.height;
     let first: Vec<f32> = check::pseudo_random(n).into_iter().map(|v| v as f32).collect();
     let mut x = vec![0.0; ghosts.all() * matrix.height];
-    let zero = vec![0.0; n];
+    let (zero, mut work) = (vec![0.0; n], vec![0.0; inverses.work()]);
     let mut hessenberg = [[0.0; ARNOLDI_STEPS]; ARNOLDI_STEPS];
     let (mut basis, mut next) = (Vec::with_capacity(ARNOLDI_STEPS), first);
     let mut size = ghosts.norm(&next);
@@ -473,7 +491,9 @@ fn spectral_radius(matrix: &BlockMatrix, inverse: &[f32], ghosts: &Ghosts) -> f3
         ghosts.spread(&mut x, matrix.height);
         basis.push(next);
         next = vec![0.0; n];
-        matrix.smoothing_step(inverse, &zero, &x, [0.0, -1.0], &mut next);
+        inverses.step(0.0, &mut next, &mut work, |next| {
+            matrix.smoothing_step(inverses.of_blocks(), &zero, &x, [0.0, -1.0], next);
+        });
         let along = ghosts.orthogonalise(&basis, &mut next);
         (0..=k).for_each(|i| hessenberg[i][k] = along[i]);
         size = ghosts.norm(&next);
@@ -526,7 +546,7 @@ mod tests {
                 row.block(j as u32)[0] = -1.0;
             }
         });
-        let radius = spectral_radius(&chain, &inverse_diagonal(&chain), &Ghosts::none(n));
+        let radius = spectral_radius(&chain, &Inverses::new(&chain, Lines::default()), &Ghosts::none(n));
         assert!((2.0 / f64::from(SAFETY)..2.0).contains(&f64::from(radius)), "{radius}");
     }
 }

@@ -3,12 +3,13 @@
 
 use zelus_linear_algebra::{Csr, Layout};
 
-/// Stiffness of a unit cube of eight nodes (Young's modulus 1, Poisson's ratio 0.3), 24 × 24.
-fn hexahedron() -> [[f64; 24]; 24] {
+/// Stiffness of a box of eight nodes with edges of these lengths (Young's modulus 1, Poisson's ratio 0.3), 24 × 24.
+fn hexahedron(edges: [f64; 3]) -> [[f64; 24]; 24] {
     let corner = |a: usize| [(a & 1) as f64, ((a >> 1) & 1) as f64, ((a >> 2) & 1) as f64];
     let (nu, mut stiffness) = (0.3, [[0.0; 24]; 24]);
     let (lambda, mu) = (nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), 0.5 / (1.0 + nu));
     let offset = 0.5 / 3.0_f64.sqrt();
+    let volume: f64 = edges.iter().product();
     for point in 0..8 {
         let at = corner(point).map(|c| 0.5 + (2.0 * c - 1.0) * offset);
         let gradient: Vec<[f64; 3]> = (0..8)
@@ -16,7 +17,8 @@ fn hexahedron() -> [[f64; 24]; 24] {
                 let c = corner(a);
                 let value = |d: usize| if c[d] > 0.5 { at[d] } else { 1.0 - at[d] };
                 let sign = |d: usize| if c[d] > 0.5 { 1.0 } else { -1.0 };
-                [sign(0) * value(1) * value(2), value(0) * sign(1) * value(2), value(0) * value(1) * sign(2)]
+                let slope = |d: usize| sign(d) / edges[d];
+                [slope(0) * value(1) * value(2), value(0) * slope(1) * value(2), value(0) * value(1) * slope(2)]
             })
             .collect();
         for a in 0..8 {
@@ -26,7 +28,8 @@ fn hexahedron() -> [[f64; 24]; 24] {
                 for i in 0..3 {
                     for j in 0..3 {
                         let same = if i == j { mu * product } else { 0.0 };
-                        stiffness[3 * a + i][3 * b + j] += (lambda * ga[i] * gb[j] + mu * ga[j] * gb[i] + same) / 8.0;
+                        stiffness[3 * a + i][3 * b + j] +=
+                            (lambda * ga[i] * gb[j] + mu * ga[j] * gb[i] + same) * volume / 8.0;
                     }
                 }
             }
@@ -35,12 +38,18 @@ fn hexahedron() -> [[f64; 24]; 24] {
     stiffness
 }
 
-/// A box of `cells` unit cubes in each direction.
+/// A box of `cells` in each direction, with edges of these lengths.
 pub struct Brick {
     pub cells: [usize; 3],
+    pub edges: [f64; 3],
 }
 
 impl Brick {
+    /// Of unit cubes.
+    pub fn of_cubes(cells: [usize; 3]) -> Self {
+        Self { cells, edges: [1.0; 3] }
+    }
+
     pub fn nodes(&self) -> usize {
         self.cells.iter().map(|c| c + 1).product()
     }
@@ -55,7 +64,8 @@ impl Brick {
         for k in 0..=self.cells[2] {
             for j in 0..=self.cells[1] {
                 for i in 0..=self.cells[0] {
-                    let (node, at) = (self.node(i, j, k), [i as f64, j as f64, k as f64]);
+                    let (node, at) = (self.node(i, j, k), [i, j, k].map(|at| at as f64));
+                    let at: [f64; 3] = std::array::from_fn(|d| at[d] * self.edges[d]);
                     for d in 0..3 {
                         let (e, f) = ((d + 1) % 3, (d + 2) % 3);
                         motions[d][3 * node + d] = 1.0;
@@ -79,7 +89,7 @@ impl Brick {
 
     /// Adds the stiffness, with equation `3 (first + node) + direction`, to a list of triplets.
     pub fn stiffness(&self, first: usize, scale: f64, triplets: &mut Vec<(usize, usize, f64)>) {
-        let element = hexahedron();
+        let element = hexahedron(self.edges);
         for k in 0..self.cells[2] {
             for j in 0..self.cells[1] {
                 for i in 0..self.cells[0] {
@@ -105,10 +115,15 @@ pub fn fix(triplets: &mut Vec<(usize, usize, f64)>, equations: impl IntoIterator
 
 /// A box of `cells` unit cubes in each direction that is held at its bottom, with its rigid-body modes.
 pub fn clamped_box(cells: usize) -> (Csr, Layout) {
-    let brick = Brick { cells: [cells; 3] };
+    let brick = Brick::of_cubes([cells; 3]);
+    held(&brick, brick.layer(0))
+}
+
+/// A box that is held at these nodes, with its rigid-body modes.
+pub fn held(brick: &Brick, nodes: Vec<usize>) -> (Csr, Layout) {
     let mut triplets = Vec::new();
     brick.stiffness(0, 1.0, &mut triplets);
-    fix(&mut triplets, brick.layer(0).into_iter().flat_map(|node| 3 * node..3 * node + 3), 1.0);
+    fix(&mut triplets, nodes.into_iter().flat_map(|node| 3 * node..3 * node + 3), 1.0);
     let mut layout = Layout::blocked(brick.nodes(), 3);
     layout.near_null_space = brick.rigid_motions();
     (Csr::from_triplets(3 * brick.nodes(), &triplets), layout)
@@ -123,7 +138,7 @@ pub struct Contact {
 
 /// Tied boxes of `n × n × n` cells; `skew` makes the coupling unsymmetric, `active` says which nodes touch.
 pub fn contact(n: usize, skew: f64, active: impl Fn(usize) -> bool) -> Contact {
-    let (lower, upper) = (Brick { cells: [n, n, n] }, Brick { cells: [n, n, n] });
+    let (lower, upper) = (Brick::of_cubes([n, n, n]), Brick::of_cubes([n, n, n]));
     let young = 1e5;
     let mut triplets = Vec::new();
     lower.stiffness(0, young, &mut triplets);
