@@ -38,7 +38,7 @@ const SAFETY: f32 = 1.1;
 /// Squarings of the matrix that Arnoldi's iteration leaves: its radius is then known to a thousandth.
 const SQUARINGS: usize = 11;
 
-/// What a level leaves to the smoother.
+/// The smoother of a level: Chebyshev iteration.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 struct Smoother {
     /// Polynomial degree.
