@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use crate::boxes::Boxes;
 use crate::runs::*;
 use crate::scene::{COMPONENTS, Corner, FRICTIONLESS, Scene, corner, die};
-use crate::support::{Results, contents, read_json, root, said, scratch_copy, zelus};
+use crate::support::{Results, change, contents, read_json, root, said, scratch_copy, zelus};
 
 /// Makes the channel of slug flow transient, with semi-Lagrangian advection of heat.
 const CARRIED: &[(&str, &str)] = &[
@@ -24,9 +24,10 @@ fn pairs_of_full_ranks_are_evaluated_by_others() {
     // Levels depend on who has which rows: solves go further than the criteria ask, so that answers are those of no engine.
     let exact = r#""linear_solver_settings": {"solver_type": "amgcl", "tolerance": 1e-12}, "max_iteration""#;
 
-    let engine = ("\"max_iteration\"", exact);
-    equals_serial(&deck.to_string_lossy(), &[engine], EQUAL, true);
+    let first_step = ("\"end_time\": 1.0", "\"end_time\": 0.25");
+    equals_serial(&deck.to_string_lossy(), &[("\"max_iteration\"", exact), first_step], EQUAL, true);
     let folder = scratch_copy(&deck);
+    change(folder.path(), DECK, first_step.0, first_step.1);
     let output = distributed(folder.path(), 2, &["run", DECK]);
     assert!(said(&output).contains("pairs moved to other ranks"), "{}", said(&output));
 }
