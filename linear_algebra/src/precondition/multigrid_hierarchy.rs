@@ -57,8 +57,8 @@ const ABOVE_CORNERS: Smoother = Smoother { degree: 3, damped_from: 0.3 };
 struct Level {
     matrix: Arc<BlockMatrix>,
     /// `D⁻¹`.
-    #[serde(serialize_with = "as_lines")]
-    lines: Inverses,
+    #[serde(rename = "lines", serialize_with = "as_lines")]
+    inverses: Inverses,
     /// Upper bound of the spectrum of `D⁻¹ A`.
     #[serde(skip)]
     radius: f32,
@@ -88,9 +88,9 @@ struct SavedLevel {
 impl From<SavedLevel> for Level {
     fn from(SavedLevel { matrix, lines, smoother, prolongation }: SavedLevel) -> Self {
         let ghosts = Ghosts::none(matrix.rows);
-        let (lines, radius) = spectrum(&matrix, lines, &ghosts);
+        let (inverses, radius) = spectrum(&matrix, lines, &ghosts);
         let restriction = prolongation.transpose();
-        Self { matrix, lines, radius, smoother, prolongation, restriction, ghosts }
+        Self { matrix, inverses, radius, smoother, prolongation, restriction, ghosts }
     }
 }
 
@@ -215,7 +215,7 @@ impl Multigrid {
     fn of(levels: Vec<Level>, last: Arc<BlockMatrix>, ghosts: Ghosts) -> Self {
         let (whole, rows) = gathered(&ghosts, &last);
         let counts = rows.iter().map(|rows| rows * last.height).collect();
-        let of_levels = levels.iter().map(|level| (&level.ghosts, level.matrix.height, level.lines.work()));
+        let of_levels = levels.iter().map(|level| (&level.ghosts, level.matrix.height, level.inverses.work()));
         let vectors = of_levels.chain([(&ghosts, last.height, 0)]).map(|(ghosts, height, work)| {
             let (all, own) = (ghosts.all() * height, ghosts.own() * height);
             Vectors { b: vec![0.0; all], x: vec![0.0; all], step: vec![0.0; own], of_lines: vec![0.0; work] }
@@ -310,7 +310,7 @@ impl Level {
         mut coarse: Tentative,
         width: usize,
     ) -> (Self, BlockMatrix, Ghosts) {
-        let (lines, radius) = spectrum(&matrix, lines, &ghosts);
+        let (inverses, radius) = spectrum(&matrix, lines, &ghosts);
         let omega = 4.0 / 3.0 * SAFETY / radius;
         let height = matrix.height;
         let (size, wide) = (height * height, height * width);
@@ -330,7 +330,8 @@ impl Level {
             product.write(row);
         };
         // The rows of A T that those of blocks in lines are made of.
-        let places = if lines.lines().count() == 0 { Vec::new() } else { lines.lines().places(matrix.rows) };
+        let lines = inverses.lines();
+        let places = if lines.count() == 0 { Vec::new() } else { lines.places(matrix.rows) };
         let place = |i: usize| places.get(i).copied().flatten();
         let product = || ProductRow::new([height, height, width]);
         let of_lines = (!places.is_empty()).then(|| {
@@ -345,15 +346,15 @@ impl Level {
             |i: usize, row: &mut BlockRow, (damping, product, before): &mut (Vec<f32>, ProductRow, Vec<f32>)| {
                 match (place(i), &of_lines) {
                     (Some((line, at)), Some(products)) => {
-                        for (next, &block) in lines.lines().blocks(line as usize).iter().enumerate() {
-                            lines.scaled_block(line as usize, [at as usize, next], -omega, damping);
+                        for (next, &block) in lines.blocks(line as usize).iter().enumerate() {
+                            inverses.scaled_block(line as usize, [at as usize, next], -omega, damping);
                             let (columns, values) = products.row_and_beside(block as usize);
                             product.add(row, columns, damping, values);
                         }
                     }
                     _ => {
                         product_of(i, row, product);
-                        let inverse = &lines.of_blocks()[i * size..(i + 1) * size];
+                        let inverse = &inverses.of_blocks()[i * size..(i + 1) * size];
                         for h in 0..height {
                             (0..height).for_each(|l| damping[l * height + h] = -omega * inverse[h * height + l]);
                         }
@@ -370,7 +371,7 @@ impl Level {
         let scratch = || (vec![0.0; size + BESIDE], product(), Vec::new());
         let prolongation = BlockMatrix::from_rows_with(shape, blocks, NOTHING_EARLIER, scratch, smoothed);
         drop(of_lines);
-        Self::with(matrix, ghosts, (lines, radius), ABOVE_AGGREGATES, aggregates, prolongation)
+        Self::with(matrix, ghosts, (inverses, radius), ABOVE_AGGREGATES, aggregates, prolongation)
     }
 
     /// A level with linear interpolation from corners, the matrix of the next one, and who has its blocks.
@@ -400,14 +401,14 @@ impl Level {
     fn with(
         matrix: Arc<BlockMatrix>,
         ghosts: Ghosts,
-        (lines, radius): (Inverses, f32),
+        (inverses, radius): (Inverses, f32),
         smoother: Smoother,
         aggregates: Aggregates,
         mut prolongation: BlockMatrix,
     ) -> (Self, BlockMatrix, Ghosts) {
         let mut restriction = prolongation.transpose();
         let (next, of_next) = aggregates.product(&ghosts, &matrix, &mut prolongation, &mut restriction);
-        (Self { matrix, lines, radius, smoother, prolongation, restriction, ghosts }, next, of_next)
+        (Self { matrix, inverses, radius, smoother, prolongation, restriction, ghosts }, next, of_next)
     }
 
     /// Chebyshev iteration on the upper part of the spectrum of `D⁻¹ A`.
@@ -436,8 +437,8 @@ impl Level {
             if k > 0 || !from_zero {
                 self.ghosts.spread(x, self.matrix.height);
             }
-            self.lines.step(factors[0], step, of_lines, |step| {
-                let inverses = self.lines.of_blocks();
+            self.inverses.step(factors[0], step, of_lines, |step| {
+                let inverses = self.inverses.of_blocks();
                 if k == 0 && from_zero {
                     diagonal_step(inverses, self.matrix.height, b, factors[1], step);
                 } else {
