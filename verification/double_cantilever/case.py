@@ -2,7 +2,7 @@
 from lib.case import Case, Quantity
 from lib.specimen import Specimen
 
-SPECIMEN = Specimen(80.0, 30.0, 3.5, 40, 0.0, 12.0, 64.0, 0.0)
+SPECIMEN = Specimen("cantilevers", 80.0, 30.0, 3.5, 40)
 
 
 def run(n, **units):
