@@ -5,7 +5,7 @@ with G at the energy of fracture: F = √(E h³ G/c)/a, c the coefficient of G =
 the crack: a force at a deflection has no part of what lengthens the crack, the rotation at its tip and the zone of softening."""
 import math
 
-from .case import Outcome
+from .case import Case, Outcome, Quantity
 from .model import Model
 from .solution import solve
 
@@ -27,6 +27,14 @@ class Specimen:
         self.energy, self.coefficient, self.cubic = self.LOADINGS[loading]
         # Half of the distance of the supports, L.
         self.span = 0.0 if loading == "cantilevers" else 0.5 * length
+
+    def case(self, title, law, neglected, cracks, note):
+        """The case of the atlas: forces against beam theory while the crack grows between two lengths."""
+        return Case(
+            title, f"linear fracture mechanics of beams: {law}", "ANALYTIC", neglected,
+            [Quantity("force over beam theory", 1.0, 0.03, order=False), Quantity("largest deviation", 0.0, 0.03, scale=1.0, order=False)],
+            (1,), lambda n, **units: self.run(n, cracks, **units), variants={"": {}, "millimetres": {"length": 1e3, "stress": 1e-6}},
+            quick=False, note=note)
 
     def at(self, crack):
         """Deflection and force of beam theory."""
