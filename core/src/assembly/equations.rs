@@ -265,20 +265,17 @@ impl Equations {
     /// Rows of the equations of a matrix over all unknowns, its columns as the unknowns follow equations: `R A T`.
     pub(super) fn motions(&self, matrix: &Csr) -> Csr {
         let mut out = Csr::empty(if matrix.rows == 0 { 0 } else { self.free.len() });
-        let mut terms: BTreeMap<u32, f64> = BTreeMap::new();
+        let mut sums: BTreeMap<u32, f64> = BTreeMap::new();
+        let mut one = [MasterTerm { equation: 0, weight: 0.0, force: 0.0 }];
         for (row, &unknown) in self.free.iter().enumerate().take(out.rows) {
             let (columns, values) = matrix.row(unknown as usize);
             for (&column, value) in columns.iter().zip(values) {
-                match &self.roles[column as usize] {
-                    DofRole::Free(equation) => *terms.entry(*equation).or_default() += value,
-                    DofRole::Fixed => {}
-                    DofRole::Slave(masters) => {
-                        masters.iter().for_each(|term| *terms.entry(term.equation).or_default() += value * term.weight);
-                    }
+                for term in self.terms(column as usize, &mut one) {
+                    *sums.entry(term.equation).or_default() += value * term.weight;
                 }
             }
-            out.columns.extend(terms.keys());
-            out.values.extend(std::mem::take(&mut terms).into_values());
+            out.columns.extend(sums.keys());
+            out.values.extend(std::mem::take(&mut sums).into_values());
             out.row_starts[row + 1] = out.columns.len();
         }
         out

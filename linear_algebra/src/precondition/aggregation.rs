@@ -2,7 +2,7 @@
 
 use std::cmp::Reverse;
 
-use super::block_matrix::BlockMatrix;
+use super::couplings::Couplings;
 use super::lines::Lines;
 use crate::parallel;
 
@@ -10,10 +10,6 @@ use crate::parallel;
 pub(super) const NONE: u32 = u32::MAX;
 /// Share of the geometric mean of two diagonal blocks above which their coupling is strong.
 const STRONG: f64 = 0.02;
-/// Blocks in a row beyond which it may be a hub; nodes of meshes have fewer.
-const HUB: usize = 200;
-/// Times the mean number of blocks in a row beyond which a row is a hub; rows of coarse matrices may all be long.
-const LONGER: usize = 4;
 /// Share of a vector that must be left after orthogonalisation for it to be kept.
 const INDEPENDENT: f64 = 1e-6;
 
@@ -41,33 +37,18 @@ struct Strong {
 }
 
 impl Strong {
-    /// The couplings in the own rows of a matrix; hubs have none.
-    fn new(matrix: &BlockMatrix, bodies: &[u32], is_hub: &[bool]) -> Self {
-        let size = matrix.size();
-        let square = |block: &[f32]| block.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>();
-        let diagonal: Vec<f64> = parallel::map(matrix.rows, ROWS, |i| {
-            let (columns, values) = matrix.row(i);
-            columns.binary_search(&(i as u32)).map_or(0.0, |at| square(&values[at * size..(at + 1) * size]))
-        });
+    fn new(couplings: &Couplings<'_>) -> Self {
+        let rows = couplings.matrix.rows;
         let of_task = |task: usize| {
             let (mut ends, mut lists) = (Vec::with_capacity(ROWS), Vec::new());
-            for i in task * ROWS..((task + 1) * ROWS).min(matrix.rows) {
-                let (columns, values) = matrix.row(i);
-                // Aggregates end where the blocks of others begin, and at the boundary of a body: bodies in contact move apart and
-                // slide.
-                let is_neighbour = |j: usize| j != i && j < matrix.rows && bodies[j] == bodies[i] && !is_hub[j];
-                let blocks = columns.iter().zip(values.chunks_exact(size)).filter(|(j, _)| is_neighbour(**j as usize));
-                let is_strong = |j: u32, block: &[f32]| {
-                    square(block) > (STRONG * STRONG) * (diagonal[i] * diagonal[j as usize]).sqrt()
-                };
-                if !is_hub[i] {
-                    lists.extend(blocks.filter(|(j, block)| is_strong(**j, block)).map(|(j, _)| *j));
-                }
+            for i in task * ROWS..((task + 1) * ROWS).min(rows) {
+                let strong = couplings.of(i).filter(|(_, square, both)| *square > (STRONG * STRONG) * both);
+                lists.extend(strong.map(|(j, _, _)| j));
                 ends.push(lists.len() as u32);
             }
             (ends, lists)
         };
-        Self { parts: parallel::map(matrix.rows.div_ceil(ROWS), 1, of_task) }
+        Self { parts: parallel::map(rows.div_ceil(ROWS), 1, of_task) }
     }
 
     /// The couplings between lines, and blocks that are in none; `unit` says which of these a block is or is in.
@@ -97,27 +78,17 @@ impl Strong {
     }
 }
 
-/// Which blocks are hubs, e.g. the reference node of a coupling.
-pub(super) fn hubs(matrix: &BlockMatrix) -> Vec<bool> {
-    let blocks: usize = (0..matrix.rows).map(|i| matrix.row(i).0.len()).sum();
-    let is_hub = |i| {
-        let length = matrix.row(i).0.len();
-        length > HUB && length * matrix.rows > LONGER * blocks
-    };
-    (0..matrix.rows).map(is_hub).collect()
-}
-
 /// Aggregate of each block, and their number; blocks without strong neighbours have none. A hub is an aggregate alone: joined with all it
 /// is coupled to, it would make a coarse node of a whole surface. Lines stay whole.
-fn aggregate(matrix: &BlockMatrix, bodies: &[u32], lines: &Lines) -> (Vec<u32>, usize) {
-    let is_hub = hubs(matrix);
-    let strong = Strong::new(matrix, bodies, &is_hub);
+fn aggregate(couplings: &Couplings<'_>, lines: &Lines) -> (Vec<u32>, usize) {
+    let is_hub = &couplings.is_hub;
+    let strong = Strong::new(couplings);
     if lines.count() == 0 {
-        return aggregate_units(&strong, &is_hub);
+        return aggregate_units(&strong, is_hub);
     }
-    let (unit, units) = lines.units(matrix.rows);
+    let (unit, units) = lines.units(is_hub.len());
     let mut hubs = vec![false; units];
-    unit.iter().zip(&is_hub).for_each(|(&unit, &is_hub)| hubs[unit as usize] |= is_hub);
+    unit.iter().zip(is_hub).for_each(|(&unit, &is_hub)| hubs[unit as usize] |= is_hub);
     let (of, count) = aggregate_units(&strong.between(&unit, units), &hubs);
     (unit.iter().map(|&unit| of[unit as usize]).collect(), count)
 }
@@ -172,9 +143,10 @@ fn join(of: &mut [u32], aggregates: usize, strong: &Strong) {
     }
 }
 
-/// The tentative coarse space of the own rows of a matrix with these lines and near-null vectors, and a body for each block.
-pub(super) fn coarsen(matrix: &BlockMatrix, bodies: &[u32], lines: &Lines, near_null_space: &[Vec<f64>]) -> Tentative {
-    let (aggregate, aggregates) = aggregate(matrix, bodies, lines);
+/// The tentative coarse space of the own rows of a matrix with these couplings, lines and near-null vectors, and a body for each block.
+pub(super) fn coarsen(couplings: &Couplings<'_>, lines: &Lines, near_null_space: &[Vec<f64>]) -> Tentative {
+    let (matrix, bodies) = (couplings.matrix, couplings.bodies);
+    let (aggregate, aggregates) = aggregate(couplings, lines);
     let (height, modes) = (matrix.height, near_null_space.len());
     let mut members = vec![Vec::new(); aggregates];
     // Place of each block among the members of its aggregate.
@@ -242,6 +214,8 @@ fn orthonormalise(list: &[usize], height: usize, near_null_space: &[Vec<f64>]) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::precondition::block_matrix::BlockMatrix;
+    use crate::precondition::couplings::HUB;
 
     /// A chain whose points are all coupled to one more, as the nodes of a face are to the reference node of a coupling.
     #[test]
@@ -260,7 +234,7 @@ mod tests {
                 row.block(points as u32)[0] = -1.0;
             }
         });
-        let (of, count) = aggregate(&chain, &vec![0; points + 1], &Lines::default());
+        let (of, count) = aggregate(&Couplings::new(&chain, &vec![0; points + 1]), &Lines::default());
         assert_eq!(of.iter().filter(|&&a| a == of[points]).count(), 1);
         assert_eq!(count, 1 + points / 3);
         assert!(of.iter().all(|&a| a != NONE));
@@ -273,6 +247,6 @@ mod tests {
         let full = BlockMatrix::from_rows([points; 2], [1, 1], |i, row| {
             (0..points).for_each(|j| row.block(j as u32)[0] = if i == j { points as f32 } else { -1.0e3 });
         });
-        assert_eq!(aggregate(&full, &vec![0; points], &Lines::default()).1, 1);
+        assert_eq!(aggregate(&Couplings::new(&full, &vec![0; points]), &Lines::default()).1, 1);
     }
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use super::block_matrix::BlockMatrix;
+use super::couplings::Couplings;
 use crate::dense_lu;
 use crate::parallel;
 
@@ -63,26 +64,12 @@ impl Nomination {
 }
 
 impl Lines {
-    /// The lines among own blocks, within bodies; `may_couple` says which blocks are no hubs.
-    pub(super) fn new(matrix: &BlockMatrix, bodies: &[u32], may_couple: impl Fn(usize) -> bool + Sync) -> Self {
-        let size = matrix.size();
-        let square = |block: &[f32]| block.iter().map(|&v| f64::from(v).powi(2)).sum::<f64>();
-        let diagonal: Vec<f64> = parallel::map(matrix.rows, BLOCKS, |i| {
-            let (columns, values) = matrix.row(i);
-            columns.binary_search(&(i as u32)).map_or(0.0, |at| square(&values[at * size..(at + 1) * size]))
-        });
-        let nominations: Vec<Nomination> = parallel::map(matrix.rows, BLOCKS, |i| {
-            let (columns, values) = matrix.row(i);
-            let is_neighbour = |j: usize| j != i && j < matrix.rows && bodies[j] == bodies[i] && may_couple(j);
-            let blocks = columns.iter().zip(values.chunks_exact(size)).filter(|(j, _)| is_neighbour(**j as usize));
-            let strength = |(&j, block): (&u32, &[f32])| {
-                let both = (diagonal[i] * diagonal[j as usize]).sqrt();
-                (j, if both > 0.0 { (square(block) / both).sqrt() } else { 0.0 })
-            };
-            match may_couple(i) {
-                true => Nomination::of(blocks.map(strength)),
-                false => Nomination::of(std::iter::empty()),
-            }
+    /// The lines among own blocks.
+    pub(super) fn new(couplings: &Couplings<'_>) -> Self {
+        let nominations: Vec<Nomination> = parallel::map(couplings.matrix.rows, BLOCKS, |i| {
+            let strength =
+                |(j, square, both): (u32, f64, f64)| (j, if both > 0.0 { (square / both).sqrt() } else { 0.0 });
+            Nomination::of(couplings.of(i).map(strength))
         });
         Self::of(&nominations)
     }
@@ -204,14 +191,14 @@ impl Inverses {
         let h = matrix.height;
         let mut of_blocks = vec![0.0; matrix.rows * h * h];
         parallel::parts_mut(&mut of_blocks, BLOCKS * h * h, &|first, out| {
-            let mut memory = Vec::new();
+            let mut memory = (Vec::new(), Vec::new());
             let each = out.chunks_exact_mut(h * h).zip(first as u32 / (h * h) as u32..);
             each.for_each(|(out, i)| invert(matrix, &[i], &mut memory, out));
         });
         let of_line = |line: usize| {
             let blocks = lines.blocks(line);
             let mut out = vec![0.0; (blocks.len() * h).pow(2)];
-            invert(matrix, blocks, &mut Vec::new(), &mut out);
+            invert(matrix, blocks, &mut (Vec::new(), Vec::new()), &mut out);
             out
         };
         let of_lines = parallel::map(lines.count(), LINES, of_line);
@@ -279,8 +266,8 @@ impl Inverses {
     }
 }
 
-/// Inverse, by rows, of the part of a matrix that these blocks have.
-fn invert(matrix: &BlockMatrix, blocks: &[u32], lu: &mut Vec<f64>, out: &mut [f32]) {
+/// Inverse, by rows, of the part of a matrix that these blocks have; its work space may be used again for as many blocks.
+fn invert(matrix: &BlockMatrix, blocks: &[u32], (lu, column): &mut (Vec<f64>, Vec<f64>), out: &mut [f32]) {
     let (h, n) = (matrix.height, blocks.len() * matrix.height);
     lu.clear();
     lu.resize(n * n, 0.0);
@@ -305,11 +292,11 @@ fn invert(matrix: &BlockMatrix, blocks: &[u32], lu: &mut Vec<f64>, out: &mut [f3
         }
     }
     let pivots = dense_lu::factorise(lu, n, LEAST_PIVOT * largest);
-    let mut column = vec![0.0; n];
+    column.resize(n, 0.0);
     for w in 0..n {
         column.fill(0.0);
         column[w] = 1.0;
-        dense_lu::solve(lu, n, &pivots, &mut column);
+        dense_lu::solve(lu, n, &pivots, column);
         (0..n).for_each(|k| out[k * n + w] = column[k] as f32);
     }
 }
@@ -345,7 +332,7 @@ mod tests {
     fn lines_go_where_couplings_dominate() {
         let lines = |points: [usize; 3], through: f32| {
             let matrix = grid(points, through);
-            let lines = Lines::new(&matrix, &vec![0; matrix.rows], |_| true);
+            let lines = Lines::new(&Couplings::new(&matrix, &vec![0; matrix.rows]));
             assert!(lines.is_sound(matrix.rows));
             let all = (0..lines.count()).map(|line| lines.blocks(line).to_vec());
             let apart = points[0] * points[1];

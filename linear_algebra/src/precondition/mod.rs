@@ -12,6 +12,7 @@ mod blocks;
 mod constrained;
 mod ilu0;
 mod reduced_system_cache;
+mod couplings;
 mod lines;
 mod multigrid_hierarchy;
 mod shared_levels;

@@ -10,9 +10,10 @@ use std::sync::{Arc, Mutex};
 
 use serde::{Deserialize, Serialize, Serializer};
 
-use super::aggregation::{self, NONE, Tentative};
+use super::aggregation::{NONE, Tentative, coarsen};
 use super::block_matrix::{BlockMatrix, Into, NOTHING_EARLIER};
 use super::block_row::BlockRow;
+use super::couplings::Couplings;
 use super::lines::{Inverses, Lines};
 use super::multiplier::BESIDE;
 use super::product_row::ProductRow;
@@ -181,7 +182,7 @@ impl Multigrid {
             ghosts.total((matrix.rows * matrix.height) as f64) as usize > COARSEST
         };
         if let Some(Corners { mut space, rows }) = corners.filter(|_| is_large(&matrix, &ghosts)) {
-            let lines = lines_of(&matrix, &bodies);
+            let lines = Lines::new(&Couplings::new(&matrix, &bodies));
             (bodies, near_null_space) = (std::mem::take(&mut space.bodies), std::mem::take(&mut space.modes));
             let (level, next, of_next) = Level::of_corners(matrix, lines, ghosts, space, rows);
             levels.push(level);
@@ -194,8 +195,9 @@ impl Multigrid {
                 break;
             }
             // Couplings of aggregates, which are of motions of unlike units, show no lines.
-            let lines = if levels.len() == of_nodes { lines_of(&matrix, &bodies) } else { Lines::default() };
-            let mut coarse = aggregation::coarsen(&matrix, &bodies, &lines, &near_null_space);
+            let couplings = Couplings::new(&matrix, &bodies);
+            let lines = if levels.len() == of_nodes { Lines::new(&couplings) } else { Lines::default() };
+            let mut coarse = coarsen(&couplings, &lines, &near_null_space);
             let aggregates = ghosts.total(coarse.aggregates as f64) as usize;
             if aggregates == 0 || aggregates * near_null_space.len() * 4 > equations * 3 {
                 break;
@@ -459,12 +461,6 @@ fn diagonal_step(inverse: &[f32], height: usize, b: &[f32], gain: f32, step: &mu
             *step = gain * row.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
         }
     });
-}
-
-/// Lines among the own blocks of a matrix.
-fn lines_of(matrix: &BlockMatrix, bodies: &[u32]) -> Lines {
-    let hubs = aggregation::hubs(matrix);
-    Lines::new(matrix, bodies, |i| !hubs[i])
 }
 
 /// The inverse of the diagonal blocks with these lines, and the upper bound of the spectrum of `D⁻¹ A`; collective.
