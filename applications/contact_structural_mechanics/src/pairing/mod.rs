@@ -7,4 +7,4 @@ mod pairs_of_interfaces;
 
 pub(crate) use edges::{FLAT, NO_COMMON_NORMAL, SHARP, take_normals_of_masters};
 pub(crate) use integration::integrate;
-pub(crate) use pairs_of_interfaces::{Pairing, PairingState, integrals, searching};
+pub(crate) use pairs_of_interfaces::{Pairing, PairingState, integrals, searching, without_tangent};

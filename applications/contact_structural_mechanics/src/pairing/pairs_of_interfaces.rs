@@ -490,10 +490,15 @@ impl Pairing {
     }
 }
 
+/// The parameters of blocks that give no tangent: no nodes around their pairs are looked for.
+pub(crate) fn without_tangent(parameters: &StepParameters) -> StepParameters {
+    StepParameters { normal_variation: NormalVariation::Update, ..parameters.clone() }
+}
+
 /// The parameters of a search that limits distances.
 pub(crate) fn searching(parameters: &StepParameters, limit: f64) -> Arc<StepParameters> {
     let segmentation = SegmentationSettings { distance_threshold: limit, ..parameters.segmentation };
-    Arc::new(StepParameters { segmentation, ..parameters.clone() })
+    Arc::new(StepParameters { segmentation, ..without_tangent(parameters) })
 }
 
 /// The integrals of the pairs of this rank.

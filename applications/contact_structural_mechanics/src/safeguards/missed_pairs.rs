@@ -1,13 +1,14 @@
 //! Facets that have come to face each other within a step although the search at its start left them out.
 
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 use zelus_core::Result;
 use zelus_core::model::ModelPart;
 use zelus_core::parallel;
 
 use crate::interface::SlaveIndex;
-use crate::pairing::{Pairing, integrals, searching};
+use crate::pairing::{Pairing, integrals, searching, without_tangent};
 use crate::pairs::{PAIRS, Pair, PairKey};
 use crate::search::have_crossed;
 use crate::settings::Setup;
@@ -98,7 +99,7 @@ pub(crate) fn missed_pairs(
     // All ranks know the near facets; each makes the pairs that it evaluates.
     let is_own = |key: &PairKey| part.evaluates_pair(&pairing.slave(*key).nodes);
     let (crossed, rest) = pairs_of(&near.iter().copied().filter(is_own).collect::<Vec<_>>());
-    let mut blocks = pairing.blocks_of(crossed, settings, parameters)?;
+    let mut blocks = pairing.blocks_of(crossed, settings, &Arc::new(without_tangent(parameters)))?;
     blocks.extend(pairing.blocks_of(rest, settings, &searching(parameters, setup.limit()))?);
     let mut more = SlaveSums::<FoundOverlap>::new(states);
     let integrals = integrals(&mut blocks, part, states);

@@ -140,8 +140,8 @@ pub(super) struct FacetExtent {
     pub(super) normal: [f64; 3],
     /// Distance from the centre to the farthest node.
     pub(super) radius: f64,
-    /// Whether it is a surface of first order.
-    is_flat: bool,
+    /// Whether it is a surface.
+    is_surface: bool,
 }
 
 impl FacetExtent {
@@ -153,16 +153,16 @@ impl FacetExtent {
             centre,
             normal: facet.normal_at(&points),
             radius: points.iter().map(|p| norm(sub(*p, centre))).fold(0.0, f64::max),
-            is_flat: facet.shape.dim() == 2 && facet.shape.cell().corners() == points.len(),
+            is_surface: facet.shape.dim() == 2,
         }
     }
 
-    /// Whether this slave and that master may share an area: seen along the slave's normal, as surfaces of first order are cut, the
-    /// circles around both meet.
+    /// Whether this slave and that master may share an area: seen along the slave's normal, as surfaces are cut by lines between their
+    /// nodes, the circles around both meet.
     fn may_overlap(&self, master: &Self) -> bool {
         let way = sub(master.centre, self.centre);
         let along = dot(way, self.normal);
         let across = norm(sub(way, scale(self.normal, along)));
-        !(self.is_flat && master.is_flat) || across <= SLACK * (self.radius + master.radius)
+        !(self.is_surface && master.is_surface) || across <= SLACK * (self.radius + master.radius)
     }
 }
