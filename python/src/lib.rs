@@ -4,6 +4,7 @@ mod access;
 mod buffer;
 mod builtin;
 mod event;
+mod law;
 mod line;
 mod outcome;
 mod plain;
@@ -23,6 +24,7 @@ fn _zelus(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<builtin::Function>()?;
     module.add_function(wrap_pyfunction!(builtin::in_interval, module)?)?;
     module.add_function(wrap_pyfunction!(builtin::is_process, module)?)?;
+    module.add_function(wrap_pyfunction!(law::add_law, module)?)?;
     module.add_function(wrap_pyfunction!(access::variable_kind, module)?)?;
     module.add_function(wrap_pyfunction!(access::is_flag, module)?)?;
     module.add_function(wrap_pyfunction!(access::names, module)?)

@@ -14,6 +14,7 @@ use zelus::{RunOptions, Simulation};
 
 use crate::errors;
 use crate::event::Event;
+use crate::law::reals;
 use crate::line::{Answer, Lent, Line, Root, Shelf, shelf};
 use crate::outcome::outcome;
 use crate::plain::plain;
@@ -143,11 +144,6 @@ impl Session {
         let text = serde_json::to_string(&report).map_err(|error| PyValueError::new_err(error.to_string()))?;
         Ok(Some((text, part.map(|part| outcome(py, part, computed)).transpose()?)))
     }
-}
-
-/// The numbers that the bytes of an array stand for.
-fn reals(bytes: &[u8]) -> Vec<f64> {
-    bytes.as_chunks().0.iter().map(|number| f64::from_ne_bytes(*number)).collect()
 }
 
 fn over() -> PyErr {

@@ -10,6 +10,7 @@ from ._zelus import __version__
 from .analysis_stage import AnalysisStage, Solver
 from .builtin import BuiltinProcess
 from .errors import InputError, NotConvergedError, Problem, SystemFailure, ZelusError, ZelusWarning
+from .law import Points, law
 from .model import Model, ModelPart
 from .parameters import Parameters
 from .process import OutputProcess, Process, register_process
@@ -29,6 +30,7 @@ __all__ = [
     "NotConvergedError",
     "OutputProcess",
     "Parameters",
+    "Points",
     "Problem",
     "Process",
     "Result",
@@ -40,6 +42,7 @@ __all__ = [
     "ZelusWarning",
     "__version__",
     "kratos",
+    "law",
     "register_process",
     "residual",
     "run",

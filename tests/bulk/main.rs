@@ -11,6 +11,7 @@ mod deck;
 mod elastic;
 mod grid;
 mod large_strain;
+mod law_functions;
 mod mean_rotations;
 mod orthotropic;
 mod periodic;

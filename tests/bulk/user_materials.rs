@@ -83,7 +83,7 @@ fn heated(grid: &Grid, law: &str, material: Value) -> Ran {
 
 /// A body of a user material moves as one of the law that it repeats, with as many iterations: stress and tangent are those. The tolerance
 /// is that of Newton's iteration.
-fn same(element: &str, shape: Shape, [own, law]: [&str; 2], [user, known]: [Value; 2], size: f64) {
+pub(super) fn same(element: &str, shape: Shape, [own, law]: [&str; 2], [user, known]: [Value; 2], size: f64) {
     let grid = Grid::new(shape, &[2, 3, 2][..shape.dim()], |p| [1.0 + p[0] + 0.1 * p[1], p[1], p[2]]);
     let found = twisted(&grid, element, own, user, size, 4);
     let expected = twisted(&grid, element, law, known, size, 4);

@@ -12,7 +12,7 @@ use zelus_structural_mechanics::tensor::{IDENTITY, Tensor, congruent, inverse, p
 
 use crate::arguments::{Arguments, COMPONENTS};
 use crate::material::{CONSTANTS, PAIRS, PastPoint, UserMaterial, components, tensor, vector};
-use crate::tangent_check::warning;
+use crate::tangent_check::{OF_UMAT, warning};
 
 /// User material for finite strain.
 struct FiniteStrainUmat(UserMaterial);
@@ -134,7 +134,7 @@ register! { LawEntry "FiniteStrainUMAT3DLaw",
     source: "calling convention of Abaqus' UMAT",
     build: LawFactory::Space(FiniteStrainUmat::boxed::<6>),
     takes: CONSTANTS,
-    warns: |properties, element| warning::<6>(properties, element, FiniteStrainUmat::boxed, false),
+    warns: |properties, element| warning::<6>(properties, element, FiniteStrainUmat::boxed, false, OF_UMAT),
 }
 
 register! { LawEntry "FiniteStrainUMAT2DPlaneStrainLaw",
@@ -142,7 +142,7 @@ register! { LawEntry "FiniteStrainUMAT2DPlaneStrainLaw",
     source: "calling convention of Abaqus' UMAT, with NTENS = 4",
     build: LawFactory::PlaneStrain { plane: FiniteStrainUmat::boxed::<3>, whole: FiniteStrainUmat::boxed::<4> },
     takes: CONSTANTS,
-    warns: |properties, element| warning::<4>(properties, element, FiniteStrainUmat::boxed, false),
+    warns: |properties, element| warning::<4>(properties, element, FiniteStrainUmat::boxed, false, OF_UMAT),
 }
 
 register! { LawEntry "FiniteStrainUMATAxisym2DLaw",
@@ -150,5 +150,5 @@ register! { LawEntry "FiniteStrainUMATAxisym2DLaw",
     source: "calling convention of Abaqus' UMAT, with NTENS = 4",
     build: LawFactory::Axisymmetric(FiniteStrainUmat::boxed::<4>),
     takes: CONSTANTS,
-    warns: |properties, element| warning::<4>(properties, element, FiniteStrainUmat::boxed, false),
+    warns: |properties, element| warning::<4>(properties, element, FiniteStrainUmat::boxed, false, OF_UMAT),
 }

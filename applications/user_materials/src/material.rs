@@ -78,23 +78,30 @@ impl PastPoint {
     }
 }
 
+/// The numbers of a constant, none where it is not given.
+///
+/// # Errors
+/// One that is no list of numbers.
+pub fn list(properties: &Properties, name: &str) -> Result<Vec<f64>> {
+    match properties.values.get(name) {
+        Some(PropertyValue::Vector(values)) => Ok(values.clone()),
+        Some(PropertyValue::Number(value)) => Ok(vec![*value]),
+        None => Ok(Vec::new()),
+        Some(_) => {
+            let fact = format!("{name} of properties {} is no list of numbers", properties.id);
+            let problem = Diagnostic::error("user-material", fact).at(properties.place.clone());
+            Err(problem.remedy("write a list, as [210e9, 0.3]").into())
+        }
+    }
+}
+
 impl UserMaterial {
     /// That of properties.
     ///
     /// # Errors
     /// A library that cannot be used; constants that are no list of numbers.
     pub fn of(properties: &Properties) -> Result<Self> {
-        let list = |name: &str| match properties.values.get(name) {
-            Some(PropertyValue::Vector(values)) => Ok(values.clone()),
-            Some(PropertyValue::Number(value)) => Ok(vec![*value]),
-            None => Ok(Vec::new()),
-            Some(_) => {
-                let fact = format!("{name} of properties {} is no list of numbers", properties.id);
-                let problem = Diagnostic::error("user-material", fact).at(properties.place.clone());
-                Err(problem.remedy("write a list, as [210e9, 0.3]"))
-            }
-        };
-        let (constants, states) = (list("UMAT_PARAMETERS")?, list("STATE_VARIABLES")?);
+        let (constants, states) = (list(properties, "UMAT_PARAMETERS")?, list(properties, "STATE_VARIABLES")?);
         let name = match properties.values.get("UMAT_NAME") {
             Some(PropertyValue::Text(name)) => name_of(name),
             _ => name_of("USER"),

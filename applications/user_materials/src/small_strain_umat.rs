@@ -7,7 +7,7 @@ use zelus_structural_mechanics::laws::{ConstitutiveLaw, LawEntry, LawFactory, Ma
 
 use crate::arguments::{Arguments, COMPONENTS};
 use crate::material::{CONSTANTS, PastPoint, UserMaterial, components, places};
-use crate::tangent_check::warning;
+use crate::tangent_check::{OF_UMAT, warning};
 
 /// User material for small strain, with this number of components of stress.
 struct SmallStrainUmat {
@@ -109,7 +109,7 @@ register! { LawEntry "SmallStrainUMAT3DLaw",
     source: "calling convention of Abaqus' UMAT",
     build: LawFactory::Space(SmallStrainUmat::boxed::<6>),
     takes: CONSTANTS,
-    warns: |properties, element| warning::<6>(properties, element, SmallStrainUmat::boxed, true),
+    warns: |properties, element| warning::<6>(properties, element, SmallStrainUmat::boxed, true, OF_UMAT),
 }
 
 register! { LawEntry "SmallStrainUMAT2DPlaneStrainLaw",
@@ -117,7 +117,7 @@ register! { LawEntry "SmallStrainUMAT2DPlaneStrainLaw",
     source: "calling convention of Abaqus' UMAT, with NTENS = 4",
     build: LawFactory::PlaneStrain { plane: SmallStrainUmat::boxed::<3>, whole: SmallStrainUmat::boxed::<4> },
     takes: CONSTANTS,
-    warns: |properties, element| warning::<4>(properties, element, SmallStrainUmat::boxed, true),
+    warns: |properties, element| warning::<4>(properties, element, SmallStrainUmat::boxed, true, OF_UMAT),
 }
 
 register! { LawEntry "SmallStrainUMAT2DPlaneStressLaw",
@@ -125,7 +125,7 @@ register! { LawEntry "SmallStrainUMAT2DPlaneStressLaw",
     source: "calling convention of Abaqus' UMAT, with NTENS = 3",
     build: LawFactory::PlaneStress(SmallStrainUmat::plane_stress),
     takes: CONSTANTS,
-    warns: |properties, element| warning::<3>(properties, element, SmallStrainUmat::plane_stress, true),
+    warns: |properties, element| warning::<3>(properties, element, SmallStrainUmat::plane_stress, true, OF_UMAT),
 }
 
 register! { LawEntry "SmallStrainUMATAxisym2DLaw",
@@ -133,5 +133,5 @@ register! { LawEntry "SmallStrainUMATAxisym2DLaw",
     source: "calling convention of Abaqus' UMAT, with NTENS = 4",
     build: LawFactory::Axisymmetric(SmallStrainUmat::boxed::<4>),
     takes: CONSTANTS,
-    warns: |properties, element| warning::<4>(properties, element, SmallStrainUmat::boxed, true),
+    warns: |properties, element| warning::<4>(properties, element, SmallStrainUmat::boxed, true, OF_UMAT),
 }

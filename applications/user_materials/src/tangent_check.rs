@@ -16,6 +16,24 @@ const GRADIENT: [[f64; 3]; 3] = [[1.0, 0.25, -0.15], [0.25, -0.4, 0.1], [-0.15, 
 /// Names of tensor components.
 const AXES: [char; 3] = ['X', 'Y', 'Z'];
 
+/// Name of what gives a tangent, and how to mend it.
+pub struct TangentSource {
+    name: &'static str,
+    remedy: &'static str,
+}
+
+/// A subroutine UMAT.
+pub const OF_UMAT: &TangentSource = &TangentSource {
+    name: "UMAT",
+    remedy: "DDSDDE is the derivative of STRESS at the end of the step by DSTRAN, of large strains by Jaumann's rate; set UMAT_IS_UNSYMMETRIC where it is not symmetric. Newton's iteration converges slowly with another",
+};
+
+/// A function of the host program.
+pub const OF_FUNCTION: &TangentSource = &TangentSource {
+    name: "function",
+    remedy: "the tangent is the derivative of the stress at the end of the step by the strain, row by row; set LAW_IS_UNSYMMETRIC where it is not symmetric. Newton's iteration converges slowly with another",
+};
+
 /// The first step of a point at rest with this displacement gradient.
 struct Trial<'a> {
     history: &'a [f64],
@@ -83,6 +101,7 @@ pub fn warning<const S: usize>(
     element: usize,
     make: MakeLaw<S>,
     is_small: bool,
+    source: &TangentSource,
 ) -> Option<Diagnostic> {
     let law = make(properties).ok()?;
     let history = vec![0.0; law.history()];
@@ -98,12 +117,12 @@ pub fn warning<const S: usize>(
         format!("{}{}", AXES[i], AXES[j])
     };
     let fact = format!(
-        "the tangent of the UMAT of properties {} differs from differences of its stress by {:.1} % of its largest entry, in d{}/d{} at strains of {size:e}",
+        "the tangent of the {} of properties {} differs from differences of its stress by {:.1} % of its largest entry, in d{}/d{} at strains of {size:e}",
+        source.name,
         properties.id,
         100.0 * share,
         name(row),
         name(column)
     );
-    let remedy = "DDSDDE is the derivative of STRESS at the end of the step by DSTRAN, of large strains by Jaumann's rate; set UMAT_IS_UNSYMMETRIC where it is not symmetric. Newton's iteration converges slowly with another";
-    Some(Diagnostic::warning("wrong-tangent", fact).at(properties.place.clone()).remedy(remedy))
+    Some(Diagnostic::warning("wrong-tangent", fact).at(properties.place.clone()).remedy(source.remedy))
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use zelus_linear_algebra::parallel;
 
 use super::rows::parts_of_rows;
-use crate::entities::{EntityBlock, EntityError, LocalSystems, Request, StepView};
+use crate::entities::{EntityBlock, EntityError, LocalSystems, Request, StepView, together};
 
 /// Entities whose local systems are held at a time.
 pub(super) const BATCH: usize = 512;
@@ -43,8 +43,10 @@ fn evaluate_runs<'a>(
     let mut done: Vec<(&mut LocalSystems, Result<(), EntityError>)> =
         systems.iter_mut().map(|out| (out, Ok(()))).collect();
     parallel::each_mut(&mut done, 1, |at, (out, result)| {
-        out.reset_rows(runs[at].len(), sizes, request);
-        *result = compute(runs[at].clone(), out);
+        *result = together(&mut || {
+            out.reset_rows(runs[at].len(), sizes, request);
+            compute(runs[at].clone(), out)
+        });
     });
     done.into_iter().try_for_each(|(_, result)| result)?;
     Ok(systems)

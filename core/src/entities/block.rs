@@ -148,9 +148,8 @@ pub struct EntityError {
 impl From<EntityError> for Error {
     fn from(e: EntityError) -> Self {
         let nodes: Vec<String> = e.nodes.iter().map(ToString::to_string).collect();
-        Diagnostic::error("entity", format!("{} {} (nodes {}): {}", e.kind, e.id, nodes.join(" "), e.fact))
-            .remedy(e.remedy)
-            .into()
+        let nodes = if nodes.is_empty() { String::new() } else { format!(" (nodes {})", nodes.join(" ")) };
+        Diagnostic::error("entity", format!("{} {}{nodes}: {}", e.kind, e.id, e.fact)).remedy(e.remedy).into()
     }
 }
 

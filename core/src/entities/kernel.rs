@@ -14,6 +14,7 @@ use super::block::{
 };
 use super::block_state::BlockState;
 use super::face_point::FacePoint;
+use super::together::together;
 use super::view::StepView;
 use crate::diagnostics::{Diagnostic, Report, Result, unfit};
 use crate::model::{EntityKind, EntityRole, Properties};
@@ -194,6 +195,12 @@ pub trait Kernel<const NODES: usize, const SIZE: usize>: Send + Sync + Sized + '
         _view: &StepView<'_>,
     ) -> Result<(), String> {
         Ok(())
+    }
+
+    /// Whether [`Kernel::accept`] notes work that is done [`together`](super::together): it is then called in both rounds, and changes a
+    /// state in one of them.
+    fn accepts_together(&self) -> bool {
+        false
     }
 
     /// Takes over the history of the entity from an earlier stage.
@@ -505,9 +512,11 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
             return Ok(());
         }
         let mut states = std::mem::take(&mut self.states);
-        let result = change(&mut states, &|at, state| self.kernel.accept(&self.gather(at, view), state, view));
+        let accept = |at: usize, state: &mut K::State| self.kernel.accept(&self.gather(at, view), state, view);
+        let all = |states: &mut [K::State]| change(states, &accept).map_err(|(at, fact)| self.error(at, view, fact));
+        let result = if self.kernel.accepts_together() { together(&mut || all(&mut states)) } else { all(&mut states) };
         self.states = states;
-        result.map_err(|(at, fact)| self.error(at, view, fact))
+        result
     }
 
     fn state(&self) -> Option<Box<dyn State>> {

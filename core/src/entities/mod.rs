@@ -14,6 +14,7 @@ mod join;
 mod kernel;
 mod pair_state;
 mod registered;
+mod together;
 mod view;
 
 pub use assumed_small::AssumedSmall;
@@ -35,4 +36,5 @@ pub use registered::{
     BlockFactory, Build, ConditionEntry, ElementEntry, block_factory, block_kinds, find_kind, is_place, kind_names,
     require_kind,
 };
+pub use together::{Round, Work, note, round, together};
 pub use view::{ELASTIC, NORMALS_OF_FIRST_ITERATION, StepView};

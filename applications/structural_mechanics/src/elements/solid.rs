@@ -14,7 +14,8 @@ use std::marker::PhantomData;
 
 use zelus_core::diagnostics::{Diagnostic, Result};
 use zelus_core::entities::{
-    AssumedSmall, BlockRequest, EntityView, FacePoint, Gauss, Kernel, LocalUnknown, Request, StepView, Tangent,
+    AssumedSmall, BlockRequest, EntityView, FacePoint, Gauss, Kernel, LocalUnknown, Request, Round, StepView, Tangent,
+    round,
 };
 use zelus_core::geometry::{Shape, ShapeTable};
 
@@ -260,12 +261,19 @@ where
             return Ok(());
         }
         let material = self.material(entity);
+        if matches!(round(), Round::Noting(_)) && !material.law.is_computed_together() {
+            return Ok(());
+        }
         let (motion, mean) = (self.motion(entity, view), Self::mean_gradients(material, entity));
         let before = state.clone();
         for (g, history) in state.chunks_exact_mut(material.law.history()).enumerate() {
             material.law.advance(&Self::point(material, g, entity, &motion, &mean, &before)?.state, history);
         }
         Ok(())
+    }
+
+    fn accepts_together(&self) -> bool {
+        self.materials.iter().any(|material| material.law.is_computed_together())
     }
 
     /// A law with as many numbers of history is taken to be the same.

@@ -198,6 +198,12 @@ pub trait ConstitutiveLaw<const S: usize>: Send + Sync {
     /// History of the law after a step accepted in `state`, whose history is that before the step.
     fn advance(&self, _state: &StrainState<'_, S>, _history: &mut [f64]) {}
 
+    /// Whether stresses are computed for many points [`together`](zelus_core::entities::together); [`ConstitutiveLaw::advance`] leaves the
+    /// history alone while points are noted.
+    fn is_computed_together(&self) -> bool {
+        false
+    }
+
     /// Appends a variable of the history, or one derived from it; whether the law knows the name.
     fn internal(&self, _state: &StrainState<'_, S>, _variable: &str, _out: &mut Vec<f64>) -> bool {
         false
