@@ -16,6 +16,12 @@ LAW = {"law": "bilinear", "normal_stiffness": 1e5, "shear_stiffness": 1e5, "norm
 LIP = 3.0
 
 
+def scaled(law, model):
+    """A law of the layer in the units of a model."""
+    units = {"stiffness": model.stress / model.length, "strength": model.stress, "energy": model.stress * model.length}
+    return {key: value * units.get(key.split("_")[-1], 1.0) if key != "law" else value for key, value in law.items()}
+
+
 class Specimen:
     """Arms whose ends are pulled apart, the others clamped ("cantilevers"), or that are bent in three points ("flexure")."""
 
@@ -83,15 +89,7 @@ class Specimen:
             touching = lambda point: point[0] < LIP
             m.interface((upper, "y0", touching), (lower, "y1", touching))
         m.fix([moved], y=f"{sign * way!r}*t")
-        law = dict(LAW)
-        for key in law:
-            if key.endswith("_stiffness"):
-                law[key] *= m.stress / m.length
-            elif key.endswith("_strength"):
-                law[key] *= m.stress
-            elif key.endswith("_energy"):
-                law[key] *= m.stress * m.length
-        s = solve(m, "penalty frictional", friction=0.0, steps=self.steps, contact={"cohesive": law, "cohesive_pairs": ["0"]})
+        s = solve(m, "penalty frictional", friction=0.0, steps=self.steps, contact={"cohesive": scaled(LAW, m), "cohesive_pairs": ["0"]})
         found = [(self.deflection * t, sign * s.reaction([moved], k)[1]) for k, t in enumerate(s.times)]
         right = [(force, self.force(deflection, cracks)) for deflection, force in found]
         ratios = [force / exact for force, exact in right if exact]
