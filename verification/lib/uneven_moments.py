@@ -101,7 +101,7 @@ def run(n, mixtures, steps, **units):
         points.append((sliding / (opening + sliding), opening + sliding))
     values = {"energy over Benzeggagh and Kenane": sum(ratios) / len(ratios), "largest deviation": max(abs(r - 1.0) for r in ratios)}
     return Outcome(solutions, values, curves={"computed": points, "published": [(0.02 * k, fracture(0.02 * k)) for k in range(51)]},
-                   labels=("energy by the share of mode II: computed (dots), Benzeggagh and Kenane (line)", "G_II/G"))
+                   labels=("energy by mixture: computed (dots), formula (line)", "G_II/G"))
 
 
 def case(title, source, neglected, mixtures, steps, note):
