@@ -215,6 +215,11 @@ impl<'a> Deck<'a> {
         self.conditions_on(facets, kind)
     }
 
+    /// Puts a condition of a kind on a node; the path of its part.
+    pub fn point(&mut self, node: usize, kind: &str) -> String {
+        self.conditions_on(vec![(Shape::Point1, vec![node])], kind)
+    }
+
     fn conditions_on(&mut self, facets: Vec<(Shape, Vec<usize>)>, kind: &str) -> String {
         let shape: Shape = facets.first().expect("a facet").0;
         let name = format!("{kind}{}", shape.cell().suffix(self.dim));

@@ -7,6 +7,7 @@ mod bolts;
 mod convergence;
 mod couplings;
 mod creep;
+mod cup;
 mod deck;
 mod elastic;
 mod grid;
