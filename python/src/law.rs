@@ -20,7 +20,8 @@ impl LawFunction for PythonLaw {
             let of = |numbers: &[f64]| PyBytes::new(py, &bytes(numbers));
             let places: Vec<f64> = points.places.iter().flatten().map(|&number| number as f64).collect();
             let lists = (of(&points.strain), of(&points.state), of(&points.parameters), of(&places));
-            let found = self.0.call1(py, (points.len(), points.components, points.states, points.time, lists));
+            let sizes = (points.len(), points.components, points.states);
+            let found = self.0.call1(py, (sizes, points.time, points.wants_tangent, lists));
             let found = found.and_then(|found| found.extract::<[Vec<u8>; 3]>(py));
             let [stress, tangent, state] = found.map_err(|error| error.to_string())?.map(|bytes| reals(&bytes));
             Ok(Response { stress, tangent, state })

@@ -37,14 +37,15 @@ def law(name: str, function: Callable | None = None):
 
     The function is called with Points and gives the stress, (point, component): Piola and Kirchhoff's second one where strains are
     Green and Lagrange's. It may give its tangent too, (point, component, component), the derivative by the strain; and then the state
-    variables at the end of the step, (point, variable). A tangent of None, or none, is found by central differences, at twice as many
-    calls as there are components. It is called with the points of up to 32 elements of a thread, one thread at a time: it is slow, and meant
+    variables at the end of the step, (point, variable). A tangent of None, or none, is found by central differences where it is wanted, at
+    twice as many calls as there are components. The function is called with the points of up to 32 elements of a thread, one thread at a time: it is slow, and meant
     to try things.
     """
     if function is None:
         return lambda given: law(name, given) or given
 
-    def respond(count, components, states, time, lists):
+    def respond(sizes, time, wants_tangent, lists):
+        count, components, states = sizes
         strain, state, parameters, places = (np.frombuffer(own) for own in lists)
         places = places.reshape(count, 2).astype(int)
         points = Points(
@@ -57,13 +58,15 @@ def law(name: str, function: Callable | None = None):
             places[:, 1],
         )
         stress, tangent, now = _answer(function, points)
-        if tangent is None:
-            tangent = _differences(function, points)
-        wanted = ((stress, (count, components)), (tangent, (count, components, components)), (now, (count, states)))
-        for what, (own, shape) in zip(("stress", "tangent", "state"), wanted):
+        numbers = {"stress": (stress, (count, components)), "state": (now, (count, states))}
+        if wants_tangent:
+            tangent = _differences(function, points) if tangent is None else tangent
+            numbers["tangent"] = (tangent, (count, components, components))
+        for what, (own, shape) in numbers.items():
             if own.shape != shape:
                 raise ValueError(f"the {what} has the shape {own.shape}, and should have {shape}")
-        return [np.ascontiguousarray(own, float).tobytes() for own, _ in wanted]
+        bytes_of = {what: np.ascontiguousarray(own, float).tobytes() for what, (own, _) in numbers.items()}
+        return [bytes_of.get(what, b"") for what in ("stress", "tangent", "state")]
 
     add_law(name, respond)
     return None

@@ -63,7 +63,7 @@ impl FunctionLaw {
         let (parameters, states) = (list(properties, "LAW_PARAMETERS")?.into(), list(properties, "STATE_VARIABLES")?);
         let law = Self { function, parameters, states, components, is_symmetric };
         let history = vec![0.0; STATES + law.states.len()];
-        let rest = law.point(&StrainState::<S> { history: &history, ..StrainState::REST });
+        let rest = law.point(&StrainState::<S> { history: &history, ..StrainState::REST }, true);
         let found = law.function.respond(&rest).and_then(|found| found.check(&rest));
         let fault = match found {
             Ok(found) if found.stress.iter().chain(&found.tangent).all(|number| number.is_finite()) => {
@@ -96,13 +96,14 @@ impl FunctionLaw {
         out
     }
 
-    fn point<const S: usize>(&self, state: &StrainState<'_, S>) -> Points {
+    fn point<const S: usize>(&self, state: &StrainState<'_, S>, wants_tangent: bool) -> Points {
         Points {
             components: self.components,
             states: self.states.len(),
             strain: self.strain(state)[..self.components].to_vec(),
             state: self.states.iter().zip(&state.history[STATES..]).map(|(start, change)| start + change).collect(),
             time: state.step,
+            wants_tangent,
             parameters: Arc::clone(&self.parameters),
             places: vec![state.place],
         }
@@ -112,7 +113,8 @@ impl FunctionLaw {
     /// fails.
     fn respond<const S: usize>(&self, state: &StrainState<'_, S>, tangent: Option<&mut Matrix<S>>) -> Option<Answer> {
         let places = self.places::<S>();
-        let answer = respond(&self.function, self.point(state), |stress, matrix, own| {
+        let point = self.point(state, tangent.is_some());
+        let answer = respond(&self.function, point, |stress, matrix, own| {
             if let Some(tangent) = tangent {
                 let entry = |i: usize, j: usize| matrix[i * self.components + j];
                 for (row, i) in tangent.iter_mut().zip(places) {

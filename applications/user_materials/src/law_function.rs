@@ -17,6 +17,8 @@ pub struct Points {
     pub state: Vec<f64>,
     /// TIME at the beginning and at the end of the step.
     pub time: [f64; 2],
+    /// Whether the tangent is wanted.
+    pub wants_tangent: bool,
     /// Constants of the material.
     pub parameters: Arc<[f64]>,
     /// Id of the element and number of the Gauss point, from 1, of each; zeros where there is none.
@@ -40,7 +42,7 @@ impl Points {
 pub struct Response {
     /// Stress that does work on the rate of the strain: Piola and Kirchhoff's second one where that is Green and Lagrange's.
     pub stress: Vec<f64>,
-    /// Its derivative by the strain, row by row.
+    /// Its derivative by the strain, row by row; it counts where it is wanted alone.
     pub tangent: Vec<f64>,
     /// State variables at the end of the step.
     pub state: Vec<f64>,
@@ -51,12 +53,12 @@ impl Response {
     /// Lists of another length than those of `points` need.
     pub(crate) fn check(self, points: &Points) -> Result<Self, String> {
         let (count, components) = (points.len(), points.components);
-        for (name, found, wanted) in [
-            ("stress", self.stress.len(), count * components),
-            ("tangent", self.tangent.len(), count * components * components),
-            ("state", self.state.len(), count * points.states),
+        for (name, found, wanted, counts) in [
+            ("stress", self.stress.len(), count * components, true),
+            ("tangent", self.tangent.len(), count * components * components, points.wants_tangent),
+            ("state", self.state.len(), count * points.states, true),
         ] {
-            if found != wanted {
+            if counts && found != wanted {
                 return Err(format!("{name} of {count} points has {found} numbers, not {wanted}"));
             }
         }

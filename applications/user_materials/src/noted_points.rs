@@ -38,6 +38,11 @@ fn compute() -> Result<(), (usize, String)> {
     Ok(())
 }
 
+/// The numbers of a point, `width` each.
+fn own(values: &[f64], at: usize, width: usize) -> &[f64] {
+    &values[at * width..(at + 1) * width]
+}
+
 /// Result at one point (`points` has one), unless it has been noted for the second round: `of` gets the numbers of the point.
 pub(crate) fn respond<T>(
     function: &Arc<dyn LawFunction>,
@@ -65,6 +70,7 @@ pub(crate) fn respond<T>(
                     points.strain.extend(&point.strain);
                     points.state.extend(&point.state);
                     points.places.extend(&point.places);
+                    points.wants_tangent |= point.wants_tangent;
                 }
                 None => {
                     let (function, response) = (Arc::clone(function), Response::default());
@@ -77,13 +83,9 @@ pub(crate) fn respond<T>(
             let noted = range.materials.iter_mut().find(|noted| is_same(noted)).ok_or("no point was noted")?;
             let at = noted.taken;
             noted.taken += 1;
-            let own = |values: &[f64], width: usize| at * width..((at + 1) * width).min(values.len());
             let Response { stress, tangent, state } = &noted.response;
-            Ok(Some(of(
-                &stress[own(stress, components)],
-                &tangent[own(tangent, components * components)],
-                &state[own(state, states)],
-            )))
+            let tangent = if noted.points.wants_tangent { own(tangent, at, components * components) } else { &[] };
+            Ok(Some(of(own(stress, at, components), tangent, own(state, at, states))))
         }),
     }
 }
