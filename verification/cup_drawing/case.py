@@ -73,7 +73,7 @@ def meshed_tools(m, way, angle):
     return lambda s, name, step: s.reaction(nodes[name], step)[1]
 
 
-def deck(n, tools, angle, travel, step, **sheets):
+def deck(n, tools, angle, travel, step):
     """The model, its sheet, what solves it, and the force of a tool in a step of the solution."""
     m = Model(2)
     sheet = m.box("Sheet", "2D4N", [40 * n, n + 1], [0.0, 0.0], [BLANK, THICKNESS], element="AxisymTotalLagrangianElement")
@@ -90,9 +90,9 @@ def deck(n, tools, angle, travel, step, **sheets):
     return m, sheet, dict(family="ALM frictional", friction=FRICTION, contact=contact, end=CLAMPED + travel, time_step=step), force
 
 
-def drawn(*settings, **more):
+def drawn(*settings):
     """A solution with its punch force over travel, the forces out of balance, the volume and radius of the sheet, and processor time."""
-    m, sheet, solver, force = deck(*settings, **more)
+    m, sheet, solver, force = deck(*settings)
     begin = resource.getrusage(resource.RUSAGE_CHILDREN)
     s = solve(m, **solver)
     end = resource.getrusage(resource.RUSAGE_CHILDREN)
