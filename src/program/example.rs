@@ -102,6 +102,12 @@ const CONSTANTS: [(&str, f64); 19] = [
 /// Constants of a material with the law of that name.
 fn constants_of(law: &str) -> Value {
     let takes = |name: &str| find::<LawEntry>(law).is_some_and(|law| law.takes_constant(name));
+    if takes("UDSM_NAME") {
+        return json!({ "UDSM_NAME": "libumat.so", "UMAT_PARAMETERS": [210_000.0, 0.3], "STATE_VARIABLES": [0.0] });
+    }
+    if takes("LAW_FUNCTION") {
+        return json!({ "LAW_FUNCTION": "my_law", "LAW_PARAMETERS": [210_000.0, 0.3] });
+    }
     let mut constants = json!({});
     let is_rubber = takes("BULK_MODULUS") || takes("BLATZ_KO_SHARE");
     if is_rubber && !takes("BULK_MODULUS") {

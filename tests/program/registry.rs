@@ -196,6 +196,8 @@ fn describe_shows_an_example_of_every_kind_of_object() {
     assert_eq!(json("alm_contact_process")["python_module"], "alm_contact_process");
     assert_eq!(json("bossak")["solver_settings"]["scheme_type"], "bossak");
     assert_eq!(json("LinearElastic3DLaw")["Material"]["constitutive_law"]["name"], "LinearElastic3DLaw");
+    assert_eq!(json("SmallStrainUMAT3DLaw")["Material"]["Variables"]["UDSM_NAME"], "libumat.so");
+    assert_eq!(json("FunctionLaw3D")["Material"]["Variables"]["LAW_FUNCTION"], "my_law");
     assert_eq!(json("gmsh")["solver_settings"]["model_import_settings"]["input_type"], "gmsh");
 }
 

@@ -20,6 +20,9 @@ const WORK: usize = 2 * MOST;
 const TIME: usize = WORK + 1;
 const STATES: usize = TIME + 2;
 
+/// Constants that no law but those by functions takes, and states.
+const CONSTANTS: &[&str] = &["LAW_FUNCTION", "LAW_PARAMETERS", "STATE_VARIABLES", "LAW_IS_UNSYMMETRIC"];
+
 /// Law by a function, with so many components of strain and stress.
 struct FunctionLaw {
     function: Arc<dyn LawFunction>,
@@ -204,6 +207,7 @@ register! { LawEntry "FunctionLaw3D",
     about: "Stress of solids by a function of Python, many points in a call: LAW_FUNCTION; LAW_PARAMETERS, STATE_VARIABLES",
     source: "the function",
     build: LawFactory::Space(FunctionLaw::whole::<6>),
+    takes: CONSTANTS,
     warns: |properties, element| warning::<6>(properties, element, FunctionLaw::whole, true, OF_FUNCTION),
 }
 
@@ -211,6 +215,7 @@ register! { LawEntry "FunctionLaw2DPlaneStrain",
     about: "Stress in plane strain by a function of Python, many points in a call: LAW_FUNCTION; LAW_PARAMETERS, STATE_VARIABLES",
     source: "the function",
     build: LawFactory::PlaneStrain { plane: FunctionLaw::whole::<3>, whole: FunctionLaw::whole::<4> },
+    takes: CONSTANTS,
     warns: |properties, element| warning::<4>(properties, element, FunctionLaw::whole, true, OF_FUNCTION),
 }
 
@@ -218,6 +223,7 @@ register! { LawEntry "FunctionLaw2DPlaneStress",
     about: "Stress in plane stress by a function of Python, many points in a call: LAW_FUNCTION; LAW_PARAMETERS, STATE_VARIABLES",
     source: "the function",
     build: LawFactory::PlaneStress(FunctionLaw::plane_stress),
+    takes: CONSTANTS,
     warns: |properties, element| warning::<3>(properties, element, FunctionLaw::plane_stress, true, OF_FUNCTION),
 }
 
@@ -225,5 +231,6 @@ register! { LawEntry "FunctionLawAxisym2D",
     about: "Stress with axial symmetry by a function of Python, many points in a call: LAW_FUNCTION; LAW_PARAMETERS, STATE_VARIABLES",
     source: "the function",
     build: LawFactory::Axisymmetric(FunctionLaw::whole::<4>),
+    takes: CONSTANTS,
     warns: |properties, element| warning::<4>(properties, element, FunctionLaw::whole, true, OF_FUNCTION),
 }

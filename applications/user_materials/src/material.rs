@@ -11,8 +11,17 @@ use zelus_structural_mechanics::tensor::Tensor;
 use crate::arguments::{Arguments, COMPONENTS, Name, name_of};
 use crate::library::{Subroutine, subroutine};
 
-/// Constants that only laws with a temperature take.
-pub const CONSTANTS: &[&str] = &["REFERENCE_TEMPERATURE"];
+/// Constants that user materials take and not every other law does.
+pub const CONSTANTS: &[&str] = &[
+    "REFERENCE_TEMPERATURE",
+    "UDSM_NAME",
+    "UMAT_PARAMETERS",
+    "STATE_VARIABLES",
+    "UMAT_NAME",
+    "IS_FORTRAN_UDSM",
+    "UMAT_IS_UNSYMMETRIC",
+    "UMAT_IS_THREAD_SAFE",
+];
 
 /// Tensor components in the order of the calling convention.
 pub const PAIRS: [(usize, usize); COMPONENTS] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
