@@ -93,6 +93,11 @@ impl FunctionLaw {
         std::array::from_fn(|c| if S == 3 && c == 2 { self.components - 1 } else { c })
     }
 
+    /// State variables of a history.
+    fn states_of(&self, history: &[f64]) -> impl Iterator<Item = f64> {
+        self.states.iter().zip(&history[STATES..]).map(|(start, change)| start + change)
+    }
+
     fn strain<const S: usize>(&self, state: &StrainState<'_, S>) -> [f64; MOST] {
         let mut out = [0.0; MOST];
         self.places::<S>().into_iter().zip(state.strain).for_each(|(at, value)| out[at] = value);
@@ -104,7 +109,7 @@ impl FunctionLaw {
             components: self.components,
             states: self.states.len(),
             strain: self.strain(state)[..self.components].to_vec(),
-            state: self.states.iter().zip(&state.history[STATES..]).map(|(start, change)| start + change).collect(),
+            state: self.states_of(state.history).collect(),
             time: state.step,
             wants_tangent,
             parameters: Arc::clone(&self.parameters),
@@ -197,7 +202,7 @@ impl<const S: usize> ConstitutiveLaw<S> for FunctionLaw {
     fn internal(&self, state: &StrainState<'_, S>, variable: &str, out: &mut Vec<f64>) -> bool {
         let is_known = variable == "STATE_VARIABLES";
         if is_known {
-            out.extend(self.states.iter().zip(&state.history[STATES..]).map(|(start, change)| start + change));
+            out.extend(self.states_of(state.history));
         }
         is_known
     }

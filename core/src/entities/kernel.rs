@@ -379,12 +379,14 @@ fn states_of<T: Send>(
     if facts.is_empty() { Ok(states) } else { Err(facts) }
 }
 
-/// Lets each state be changed; the first that fails, by its place.
-fn change<T>(states: &mut [T], by: &dyn Fn(usize, &mut T) -> Result<(), String>) -> Result<(), (usize, String)> {
-    for (at, state) in states.iter_mut().enumerate() {
-        by(at, state).map_err(|fact| (at, fact))?;
-    }
-    Ok(())
+/// Lets each state be changed, in the rounds of [`together`] where that is asked for.
+fn change<T>(
+    states: &mut [T],
+    in_rounds: bool,
+    by: &dyn Fn(usize, &mut T) -> Result<(), EntityError>,
+) -> Result<(), EntityError> {
+    let mut all = || states.iter_mut().enumerate().try_for_each(|(at, state)| by(at, state));
+    if in_rounds { together(&mut all) } else { all() }
 }
 
 /// States out of a file that fit `own`.
@@ -512,9 +514,10 @@ impl<K: Kernel<NODES, SIZE>, const NODES: usize, const SIZE: usize> EntityBlock 
             return Ok(());
         }
         let mut states = std::mem::take(&mut self.states);
-        let accept = |at: usize, state: &mut K::State| self.kernel.accept(&self.gather(at, view), state, view);
-        let all = |states: &mut [K::State]| change(states, &accept).map_err(|(at, fact)| self.error(at, view, fact));
-        let result = if self.kernel.accepts_together() { together(&mut || all(&mut states)) } else { all(&mut states) };
+        let accept = |at: usize, state: &mut K::State| {
+            self.kernel.accept(&self.gather(at, view), state, view).map_err(|fact| self.error(at, view, fact))
+        };
+        let result = change(&mut states, self.kernel.accepts_together(), &accept);
         self.states = states;
         result
     }
