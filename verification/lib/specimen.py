@@ -22,6 +22,15 @@ def scaled(law, model):
     return {key: value * units.get(key.split("_")[-1], 1.0) if key != "law" else value for key, value in law.items()}
 
 
+def ends_of_cells(pieces):
+    """Ends of cells on pieces that follow each other: each its ends and the largest cell."""
+    out = [pieces[0][0]]
+    for low, high, size in pieces:
+        count = math.ceil((high - low) / size - 1e-9)
+        out += [low + (high - low) * (k + 1) / count for k in range(count)]
+    return out
+
+
 class Specimen:
     """Arms whose ends are pulled apart, the others clamped ("cantilevers"), or that are bent in three points ("flexure")."""
 
@@ -61,12 +70,8 @@ class Specimen:
     def stations(self, n, cracks):
         """Ends of the cells: n on a length of 1 where the crack grows, a quarter of that elsewhere."""
         places = sorted({0.0, LIP, self.crack, cracks[1] + 5.0, self.span, self.length})
-        out = [0.0]
-        for low, high in zip(places, places[1:]):
-            fine = low >= self.crack and high <= cracks[1] + 5.0
-            count = math.ceil((high - low) * n * (1.0 if fine else 0.25))
-            out += [low + (high - low) * (k + 1) / count for k in range(count)]
-        return out
+        size = lambda low, high: (1.0 if low >= self.crack and high <= cracks[1] + 5.0 else 4.0) / n
+        return ends_of_cells([(low, high, size(low, high)) for low, high in zip(places, places[1:])])
 
     def run(self, n, cracks, **units):
         m = Model(2, **units)

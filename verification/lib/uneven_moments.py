@@ -9,7 +9,7 @@ import math
 from .case import Case, Outcome, Quantity
 from .model import Model
 from .solution import solve
-from .specimen import LAW, YOUNG, scaled
+from .specimen import LAW, YOUNG, ends_of_cells, scaled
 
 HIGH = 20.0
 INERTIA = YOUNG * HIGH ** 3 / 12
@@ -46,11 +46,9 @@ def course(first, last):
 def stations(n):
     """Ends of the cells along the arms and across them: n in a height where the crack grows, a quarter of that elsewhere."""
     fine = HIGH / n
-    along, across = [0.0], [0.0]
-    for low, high, size in ((0.0, FIRST, 4 * fine), (FIRST, LAST + 1.5 * HIGH, fine), (LAST + 1.5 * HIGH, LENGTH, 4 * fine)):
-        count = math.ceil((high - low) / size - 1e-9)
-        along += [low + (high - low) * (k + 1) / count for k in range(count)]
-    size = 0.5 * fine
+    grown = LAST + 1.5 * HIGH
+    along = ends_of_cells([(0.0, FIRST, 4 * fine), (FIRST, grown, fine), (grown, LENGTH, 4 * fine)])
+    across, size = [0.0], 0.5 * fine
     while across[-1] + 1.5 * size < HIGH:
         across.append(across[-1] + size)
         size *= 2.0
