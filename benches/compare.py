@@ -1,22 +1,27 @@
 #!/usr/bin/env python3
-"""Time zelus and the reference program on the same decks and print a markdown table.
+"""Time zelus and other programs on the same decks and print a markdown table.
 
     compare.py [--threads 2] [--rounds 3] [DECK...]
     compare.py --blocks 8 16 24 [--kinds frictionless friction] [--steps 1]
-    compare.py --lugs 1,1 2,2
+    compare.py --lugs 1,1 2,2 --arches 4,1 4,2 4,1,0
 
 A DECK is a ProjectParameters.json or its folder; `--blocks` names sizes of the decks of gen_blocks.py instead (cells along an edge of
-the lower block: 8 are 3,000 unknowns, 60 a million), and `--lugs` those of gen_lug.py (edge of the cells and their order). All programs run on scratch copies, alternately, and times are those of the
-whole process, the shortest of the rounds, on the clock and of the processors. The latter means something on a machine that
-does other work as well; take it with one thread, since waiting threads of the reference count as busy. Memory is the
-largest of the process. Comparisons with stored results, and output in a format that one program does not know, are left
-out. `--ours` names a deck that zelus runs in place of the one DECK (say, one that differs in the linear solver). A run
+the lower block: 8 are 3,000 unknowns, 60 a million), `--lugs` those of gen_lug.py (edge of the cells and their order), and `--arches`
+those of gen_arches.py (cells through the thickness, their order, and the friction where it is not that of the script). All programs run
+on scratch copies, alternately, and times are those of the whole process, the shortest of the rounds, on the clock and of the processors.
+The latter means something on a machine that does other work as well; take it with one thread, since waiting threads of the reference
+count as busy. Memory is the largest of the process. Comparisons with stored results, and output in a format that one program does not
+know, are left out. `--ours` names a deck that zelus runs in place of the one DECK (say, one that differs in the linear solver). A run
 that fails, or takes longer than --limit, shows as such and ends in exit code 1.
 
 The reference is KratosMultiphysics: that of the Python that the environment names (KRATOS_PYTHON), or else one that is
 installed into target/reference by pip, once. `--alone` times zelus only. KRATOS_RUN may name a script that runs a
-deck given as its argument; without it a plain structural-mechanics analysis is run. Of the kind `body` and of lugs CalculiX solves the
-same mesh, too, where `ccx` is installed. `--programs` selects among them.
+deck given as its argument; without it a plain structural-mechanics analysis is run. Of the kind `body`, of lugs and of arches CalculiX
+solves the same mesh, too, where `ccx` is installed, and of the kind `frictionless`, of lugs and of arches GetFEM (getfem_contact.py), where
+the package python3-getfem is: in the Python that GETFEM_PYTHON names, in this one or in /usr/bin/python3. `--programs` selects among them.
+
+Lugs and arches have columns of force: the largest sum of REACTION_X, and the last after a slash. Programs that solve the same problem agree
+in it.
 """
 import argparse
 import json
@@ -29,6 +34,7 @@ import threading
 import time
 import venv
 
+import gen_arches
 import gen_blocks
 import gen_lug
 
@@ -77,7 +83,8 @@ def without_checks(folder, name):
         for key, items in list(deck.get(part, {}).items()):
             if isinstance(items, list):
                 names = ("from_json_check_result_process", "json_output_process", "vtu_output_process", "check_")
-                deck[part][key] = [i for i in items if not str(i.get("python_module", "")).startswith(names)]
+                deck[part][key] = [i for i in items if not str(i.get("python_module", "")).startswith(names)
+                                   or i["Parameters"].get("output_file_name") == "reaction.json"]
     with open(path, "w") as file:
         json.dump(deck, file, indent=1)
 
@@ -111,8 +118,23 @@ def iterations_of(path):
     return report["sizes"]["unknowns"], f"{len(linear)} × {mean:.0f}"
 
 
+def force_of(folder):
+    """Largest and last sum of REACTION_X in reaction.json or in the file of CalculiX, in words; None when a run wrote none."""
+    path, sums = os.path.join(folder, "reaction.json"), []
+    if os.path.isfile(path):
+        with open(path) as file:
+            nodes = [v["REACTION_X"] for v in json.load(file).values() if isinstance(v, dict)]
+        sums = [sum(own) for own in zip(*nodes)]
+    for name in os.listdir(folder):
+        if name.endswith(".dat"):
+            with open(os.path.join(folder, name)) as file:
+                lines = [line.split() for line in file]
+            sums = [float(after[0]) for line, after in zip(lines, lines[2:]) if line[:2] == ["total", "force"]]
+    return f"{max(map(abs, sums)):.4g} / {abs(sums[-1]):.4g}" if sums else None
+
+
 def one_round(command, deck, threads, limit):
-    """A run on a scratch copy of the deck, and what the report says if there is one."""
+    """A run on a scratch copy of the deck, what the report says if there is one, and the force."""
     folder, name = deck
     with tempfile.TemporaryDirectory() as scratch:
         copy = os.path.join(scratch, "deck")
@@ -120,7 +142,7 @@ def one_round(command, deck, threads, limit):
         without_checks(copy, name)
         done = measured(command, copy, threads, limit)
         report = os.path.join(copy, "report.json")
-        return done, iterations_of(report) if done and os.path.isfile(report) else None
+        return done, iterations_of(report) if done and os.path.isfile(report) else None, force_of(copy) if done else None
 
 
 def python_of_reference():
@@ -138,6 +160,14 @@ def python_of_reference():
         venv.create(folder, with_pip=True)
         subprocess.run([python, "-m", "pip", "install", "-q", *PACKAGES], check=True, stdout=sys.stderr)
     return python
+
+
+def python_of_getfem():
+    """A Python that has GetFEM, None if there is none."""
+    for python in filter(None, (os.environ.get("GETFEM_PYTHON"), sys.executable, "/usr/bin/python3")):
+        if shutil.which(python) and subprocess.run([python, "-c", "import getfem"], stderr=subprocess.DEVNULL).returncode == 0:
+            return python
+    return None
 
 
 def columns(rounds, which, form):
@@ -158,7 +188,9 @@ def main():
     parser.add_argument("--blocks", type=int, nargs="+", default=[], metavar="CELLS")
     parser.add_argument("--kinds", nargs="+", choices=gen_blocks.KINDS, default=["frictionless"])
     parser.add_argument("--lugs", nargs="+", default=[], metavar="SIZE,ORDER")
-    parser.add_argument("--programs", nargs="+", choices=["Kratos", "CalculiX"], default=["Kratos", "CalculiX"], help="beside zelus")
+    parser.add_argument("--arches", nargs="+", default=[], metavar="CELLS,ORDER[,FRICTION]")
+    others = ["Kratos", "CalculiX", "GetFEM"]
+    parser.add_argument("--programs", nargs="+", choices=others, default=others, help="beside zelus")
     parser.add_argument("--steps", type=int, default=1, help="steps of the blocks")
     parser.add_argument("--solver", help="linear solver that the blocks name, instead of what the reference is fastest with")
     parser.add_argument("--ours", metavar="DECK", help="what zelus runs instead of the one DECK")
@@ -170,8 +202,8 @@ def main():
     options = parser.parse_args()
     if options.ours and len(options.decks) != 1:
         parser.error("--ours goes with one DECK")
-    if not options.decks and not options.blocks and not options.lugs:
-        parser.error("name decks, or sizes with --blocks or --lugs")
+    if not (options.decks or options.blocks or options.lugs or options.arches):
+        parser.error("name decks, or sizes with --blocks, --lugs or --arches")
     zelus = os.path.abspath(options.zelus)
     if not os.path.isfile(zelus):
         sys.exit(f"there is no {zelus}; build it with `cargo build --release`, or name another with --zelus")
@@ -179,17 +211,20 @@ def main():
     if not options.alone and "Kratos" in options.programs:
         python, script = python_of_reference(), os.environ.get("KRATOS_RUN")
         programs["Kratos"] = [python, os.path.abspath(script)] if script else [python, "-c", REFERENCE]
-    has_files = options.lugs or "body" in options.kinds and options.blocks
-    ccx = shutil.which("ccx") if has_files and not options.alone and "CalculiX" in options.programs else None
-    names = [*programs, *(["CalculiX"] if ccx else [])]
+    drawn = options.lugs or options.arches
+    wanted = lambda name, kind: not options.alone and name in options.programs and (drawn or kind in options.kinds and options.blocks)
+    ccx = shutil.which("ccx") if wanted("CalculiX", "body") else None
+    getfem = python_of_getfem() if wanted("GetFEM", "frictionless") else None
+    names = [*programs, *(["CalculiX"] if ccx else []), *(["GetFEM"] if getfem else [])]
 
     print(f"Whole process, {options.threads} threads, best of {options.rounds} alternating rounds; in brackets the ratio to zelus.\n")
     heads = [f"{name}, {what}" for what in ("s", "processor s", "MB") for name in names]
+    heads += [f"{name}, force" for name in names] if drawn else []
     print("| deck | unknowns | " + " | ".join(heads) + " | Newton × linear iterations |")
     print("|---|---:|" + "---:|" * (len(heads) + 1), flush=True)
     failed = False
     with tempfile.TemporaryDirectory() as made:
-        decks = [(deck_of(path), os.path.relpath(deck_of(path)[0], os.path.dirname(os.path.dirname(deck_of(path)[0]))))
+        decks = [(deck_of(path), os.path.relpath(deck_of(path)[0], os.path.dirname(os.path.dirname(deck_of(path)[0]))), None)
                  for path in options.decks]
         for kind in options.kinds:
             for cells in options.blocks:
@@ -200,14 +235,22 @@ def main():
                 subprocess.run([sys.executable, gen_blocks.__file__, folder, *asked, "--solver", solver], check=True,
                                stdout=subprocess.DEVNULL)
                 steps = f", {options.steps} steps" if options.steps > 1 else ""
-                decks.append(((folder, "ProjectParameters.json"), f"{kind}, {cells}{steps}"))
+                decks.append(((folder, "ProjectParameters.json"), f"{kind}, {cells}{steps}", kind))
         for size, order in (lug.split(",") for lug in options.lugs):
             folder = os.path.join(made, f"lug-{size}-{order}")
             asked = ["--size", size, "--order", order, "--zelus", zelus, *(["--solver", options.solver] if options.solver else [])]
             subprocess.run([sys.executable, gen_lug.__file__, folder, *asked], check=True, stdout=subprocess.DEVNULL)
-            decks.append(((folder, "ProjectParameters.json"), f"lug, {size} mm, order {order}"))
-        for theirs, label in decks:
-            rounds, said = {name: [] for name in names}, None
+            decks.append(((folder, "ProjectParameters.json"), f"lug, {size} mm, order {order}", "lug"))
+        for arches in options.arches:
+            cells, order, *friction = arches.split(",")
+            folder = os.path.join(made, f"arches-{arches}")
+            asked = ["--cells", cells, "--order", order, *(["--friction", *friction] if friction else []),
+                     *(["--solver", options.solver] if options.solver else [])]
+            subprocess.run([sys.executable, gen_arches.__file__, folder, *asked], check=True, stdout=subprocess.DEVNULL)
+            words = f", friction {friction[0]}" if friction else ""
+            decks.append(((folder, "ProjectParameters.json"), f"arches, {cells} cells, order {order}{words}", "arches"))
+        for theirs, label, kind in decks:
+            rounds, forces, said = {name: [] for name in names}, dict.fromkeys(names, "–"), None
             for _ in range(options.rounds):
                 for name in names:
                     deck = deck_of(options.ours) if options.ours and name == "zelus" else theirs
@@ -216,14 +259,20 @@ def main():
                         if not files:
                             continue
                         command = [ccx, "-i", files[0]]
+                    elif name == "GetFEM":
+                        if kind not in ("frictionless", "lug", "arches"):
+                            continue
+                        command = [getfem, os.path.join(ROOT, "benches", "getfem_contact.py"), deck[1]]
                     else:
                         command = programs[name] + [deck[1]]
-                    done, report = one_round(command, deck, options.threads, options.limit)
+                    done, report, force = one_round(command, deck, options.threads, options.limit)
                     rounds[name].append(done)
                     said = report or said
+                    if force and kind in ("lug", "arches"):
+                        forces[name] = force
                     failed |= done is None
             unknowns, iterations = said or ("", "")
-            cells = [columns(rounds, 0, ".3g"), columns(rounds, 1, ".3g"), columns(rounds, 2, ".0f")]
+            cells = [columns(rounds, 0, ".3g"), columns(rounds, 1, ".3g"), columns(rounds, 2, ".0f"), *(forces.values() if drawn else [])]
             print(f"| {label} | {unknowns} | {' | '.join(cells)} | {iterations} |", flush=True)
     sys.exit(1 if failed else 0)
 

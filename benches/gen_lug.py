@@ -6,8 +6,8 @@
 The lug is a plate of 12 mm with a round head and a hole of 20 mm; the pin fills the hole without clearance and stands out by 6 mm on both
 sides. The far end of the lug is clamped, the ends of the pin move by `--motion` mm along the plate; contact is frictionless. Tetrahedra of
 `--order` 1 or 2 have the edge `--size` mm at the contact and four times that far from it. Steel, 210 GPa. Needs the package gmsh of PyPI, and
-zelus, whose command `new` makes the deck from the mesh: ProjectParameters.json for both programs that read decks, lug.inp for CalculiX (contact
-from surface to surface).
+zelus, whose command `new` makes the deck from the mesh: ProjectParameters.json for the programs that read decks, lug.inp for CalculiX (contact
+from surface to surface). reaction.json has the reactions at the ends of the pin.
 """
 import argparse
 import json
@@ -18,7 +18,7 @@ import sys
 import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "tests", "cases"))
-from deck import contact_process, fix, material, parameters, solver  # noqa: E402
+from deck import contact_process, fix, json_output, material, parameters, solver  # noqa: E402
 
 RADIUS, THICKNESS, OVERHANG, LENGTH, HALF_HEIGHT = 10.0, 12.0, 6.0, 60.0, 20.0
 YOUNG, POISSON = 210000.0, 0.3
@@ -132,7 +132,8 @@ def main():
     deck = parameters(
         "lug", solver(3, "lug", 1 / options.steps, **settings),
         [fix("Clamped", 0.0, 0.0, 0.0), fix("PinEnds", f"{options.motion}*t", 0.0, 0.0)],
-        contact=[contact_process([], contact_model_part={"0": ["PinFace", "HoleFace"]}, assume_master_slave={"0": ["PinFace"]})])
+        contact=[contact_process([], contact_model_part={"0": ["PinFace", "HoleFace"]}, assume_master_slave={"0": ["PinFace"]})],
+        outputs=[json_output("reaction.json", ["REACTION"], "PinEnds")])
     materials = [material(name, at + 1, "3d", YOUNG, POISSON) for at, name in enumerate(("Lug", "Pin"))]
     for name, content in (("ProjectParameters", deck), ("StructuralMaterials", {"properties": materials})):
         with open(os.path.join(options.folder, name + ".json"), "w") as file:

@@ -8,19 +8,23 @@ from lib.solution import solve
 YOUNG, POISSON, INNER, OUTER = 1e3, 0.3, 9.0, 10.0
 
 
+def half_ring(model, name, divisions, centre, side, shape="2D4N"):
+    """An arch around `centre`, open below (`side` 1) or above (-1); the first of its divisions runs from the inner to the outer radius."""
+    return model.box(name, shape, divisions, [INNER, 0.0], [OUTER, math.pi],
+                     lambda r, t: (centre[0] + side * r * math.cos(t), centre[1] + side * r * math.sin(t)), element="TotalLagrangianElement")
+
+
 def run(n, family="ALM", slave="upper", friction=None, depth=1.5, steps=8, shift=False, **units):
     """The pair is pressed by 2 `depth`, and one arch by `depth` on a plane."""
     forces, solutions = [], []
     for plane in (False, True):
         m = Model(2, **units)
-        low = m.box("Lower", "2D4N", [2, 8 * n], [INNER, 0.0], [OUTER, math.pi], lambda r, t: (r * math.cos(t), r * math.sin(t) - OUTER),
-                    element="TotalLagrangianElement")
+        low = half_ring(m, "Lower", [2, 8 * n], (0.0, -OUTER), 1)
         if plane:
             top = m.box("Plane", "2D4N", [6 * n, 1], [-8.0, 0.0], [8.0, 0.5])
         else:
             count = 8 * n + 2 if shift else 8 * n
-            top = m.box("Upper", "2D4N", [2, count], [INNER, 0.0], [OUTER, math.pi], lambda r, t: (-r * math.cos(t), OUTER - r * math.sin(t)),
-                        element="TotalLagrangianElement")
+            top = half_ring(m, "Upper", [2, count], (0.0, OUTER), -1)
         for body in (low, top):
             m.material(body, "strain", YOUNG, POISSON)
         m.fix(low.side_nodes["y0"] + low.side_nodes["y1"], x=0.0, y=0.0)
