@@ -84,7 +84,7 @@ def without_checks(folder, name):
             if isinstance(items, list):
                 names = ("from_json_check_result_process", "json_output_process", "vtu_output_process", "check_")
                 deck[part][key] = [i for i in items if not str(i.get("python_module", "")).startswith(names)
-                                   or i["Parameters"].get("output_file_name") == "reaction.json"]
+                                   or i.get("Parameters", {}).get("output_file_name") == "reaction.json"]
     with open(path, "w") as file:
         json.dump(deck, file, indent=1)
 
