@@ -16,6 +16,8 @@ const SIMPLE_REACH: f64 = 2e-3;
 const STABILIZATION: f64 = 0.25;
 /// Gap, in mesh sizes, of a node that touches its master.
 const TOUCHING: f64 = 1e-6;
+/// Power of the distance from the edge of contact with which gaps grow.
+const GROWTH_OF_GAP: f64 = 1.5;
 /// Gap of a node that nothing faces.
 const FAR: f64 = 1e12;
 
@@ -44,11 +46,25 @@ pub(crate) fn clear_inactive(
     }
 }
 
+/// Which slave nodes of bodies that are in contact already begin a step in contact.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SetAtStart {
+    /// Nodes that ended the last step so, and nodes that the edge of contact will reach.
+    Kept,
+    /// All near nodes, as between bodies that are not in contact.
+    #[default]
+    Near,
+}
+
 /// Criterion of contact at step start.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ActivationCriterion<'a> {
     /// A gap below this length.
     GapBelow(f64),
+    /// Nodes in contact already, and nodes that the edge of contact will reach in a step of `ratio` times the length of the last one.
+    /// Where `in_contact`, by place, does not hold for the bodies of a node, a gap below `range`. Gaps up to `least` are zero.
+    Kept { range: f64, in_contact: &'a [bool], ratio: f64, least: f64 },
     /// A gap below a small share of the mesh size of the node.
     ShareOfMeshSize,
     /// These nodes, and those that are in contact already.
@@ -66,10 +82,16 @@ pub(crate) fn start(nodes: &Nodes, states: &mut SlaveStates, start: ActivationCr
         let near = near
             || match start {
                 ActivationCriterion::GapBelow(range) => gap < range,
+                ActivationCriterion::Kept { in_contact, ratio, least, .. } if in_contact[slave.place()] => {
+                    let before = state.kinematics.gap_at_start;
+                    gap < FAR && (state.law.active || (before > least && is_reached(gap, before, ratio)))
+                }
+                ActivationCriterion::Kept { range, .. } => gap < range,
                 ActivationCriterion::ShareOfMeshSize => gap < SIMPLE_REACH * sizes[mesh_nodes[slave.place()] as usize],
                 ActivationCriterion::Touching(nodes) => nodes.contains(&slave) || state.law.active,
             };
         state.law.active = near && !state.kinematics.isolated;
+        state.kinematics.gap_at_start = state.gap().unwrap_or_default();
         state.kinematics.start_gap = if near { gap } else { 0.0 };
         let size = sizes[mesh_nodes[slave.place()] as usize];
         state.law.joined |= state.law.active && gap <= TOUCHING * size;
@@ -78,6 +100,13 @@ pub(crate) fn start(nodes: &Nodes, states: &mut SlaveStates, start: ActivationCr
             state.law.slides = Some(slides || state.law.slides == Some(true));
         }
     });
+}
+
+/// Whether the edge of contact will reach a node in a step of `ratio` times the length of the last one, in which its gap went from `before`
+/// to `gap`: the edge goes on as fast, and between smooth bodies the gap grows with its distance to the power of 3/2
+/// (K. L. Johnson, Contact Mechanics, 1985, section 5.1).
+fn is_reached(gap: f64, before: f64, ratio: f64) -> bool {
+    gap < before * (ratio / (1.0 + ratio)).powf(GROWTH_OF_GAP)
 }
 
 /// The slave nodes, of these of each interface, of interfaces without contact that are at most `range` mesh sizes farther from a master than the nearest
@@ -116,4 +145,19 @@ pub(crate) fn stabilization_length(part: &ModelPart, states: &SlaveStates, slave
     own.for_each(|node| sums = [sums[0] + sizes[node], sums[1] + 1.0]);
     part.ranks.sum(&mut sums);
     if sums[1] > 0.0 { STABILIZATION * sums[0] / sums[1] } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_reached;
+
+    /// ANALYTIC: gaps d^(3/2) beside an edge that moved from x = 0 to 1 in the last step, at x = 1 + d; exact but for rounding.
+    #[test]
+    fn nodes_that_a_steady_edge_reaches_begin_in_contact() {
+        let gap = |d: f64| d.powf(1.5);
+        for (d, ratio, reached) in [(0.99, 1.0, true), (1.01, 1.0, false), (0.49, 0.5, true), (0.51, 0.5, false)] {
+            assert_eq!(is_reached(gap(d), gap(1.0 + d), ratio), reached, "{d} in {ratio} steps");
+        }
+        assert!(!is_reached(1.0, 0.0, 1.0), "a node that opens");
+    }
 }

@@ -215,7 +215,7 @@ impl Interaction for ContactInteraction {
             self.in_contact.accept(&self.contact.pairing.slaves_by_interface(), &self.contact.states);
         }
         // Nodes that nothing faces any more have no equation that would drive their multipliers to zero.
-        self.contact.clear_inactive(part);
+        self.contact.end_step(part);
         let (formulation, clears) =
             (self.contact.setup.settings.formulation, self.contact.setup.settings.clear_inactive);
         self.contact.states.for_each(|_, state| {

@@ -6,7 +6,7 @@ use zelus_core::model::{ModelPart, bodies_of_nodes};
 use zelus_core::{Result, StateMapper};
 
 use crate::active_set::activation::{self, ActivationCriterion};
-use crate::active_set::{ActiveSetUpdate, FacetsOfPair, SupportedNodes, corner_nodes, forced_points};
+use crate::active_set::{ActiveSetUpdate, FacetsOfPair, SetAtStart, SupportedNodes, corner_nodes, forced_points};
 use crate::flags::{MASTER, SLAVE};
 use crate::friction;
 use crate::interface::{
@@ -33,6 +33,10 @@ pub(super) struct ContactState {
     /// Slave nodes that supports hold.
     supported_nodes: SupportedNodes,
     steps_since_search: usize,
+    /// Length of the last accepted step (time).
+    last_length: f64,
+    /// Whether the step has failed before.
+    repeated: bool,
     saved: SlaveStates,
     /// Whether slave nodes begin inside their masters.
     pub overlaps: bool,
@@ -50,6 +54,7 @@ pub(super) struct RememberedContact {
     supported_nodes: SupportedNodes,
     tolerances: Tolerances,
     steps_since_search: usize,
+    last_length: f64,
 }
 
 impl RememberedContact {
@@ -80,6 +85,8 @@ impl ContactState {
             states: SlaveStates::default(),
             supported_nodes: SupportedNodes::default(),
             steps_since_search: usize::MAX,
+            last_length: f64::MAX,
+            repeated: false,
             saved: SlaveStates::default(),
             surfaces: InterfaceSurfaces::default(),
         })
@@ -151,7 +158,7 @@ impl ContactState {
     pub(super) fn restore(&mut self) {
         self.states = self.saved.clone();
         self.pairing.restore(&self.setup);
-        self.steps_since_search = usize::MAX;
+        (self.steps_since_search, self.repeated) = (usize::MAX, true);
     }
 
     /// The part of the state that lasts between steps.
@@ -162,6 +169,7 @@ impl ContactState {
             supported_nodes: self.supported_nodes.clone(),
             tolerances: self.setup.tolerances,
             steps_since_search: self.steps_since_search,
+            last_length: self.last_length,
         }
     }
 
@@ -170,7 +178,8 @@ impl ContactState {
     /// # Errors
     /// Errors of making blocks.
     pub(super) fn resume(&mut self, part: &mut ModelPart, state: RememberedContact) -> Result<()> {
-        let RememberedContact { pairing, states, supported_nodes, tolerances, steps_since_search } = state;
+        let RememberedContact { pairing, states, supported_nodes, tolerances, steps_since_search, last_length } = state;
+        self.last_length = last_length;
         supported_nodes.check(part.nodes.len())?;
         (self.supported_nodes, self.setup.tolerances, self.steps_since_search) =
             (supported_nodes, tolerances, steps_since_search);
@@ -328,6 +337,12 @@ impl ContactState {
         }
     }
 
+    /// Step end: what is not in contact keeps no multiplier.
+    pub(super) fn end_step(&mut self, part: &mut ModelPart) {
+        self.clear_inactive(part);
+        (self.last_length, self.repeated) = (part.info.delta_time, false);
+    }
+
     /// Step start: takes up multipliers from outside; the last accepted state becomes the reference of the step.
     pub(super) fn begin_step(&mut self, part: &mut ModelPart) {
         self.import_multipliers(part);
@@ -379,10 +394,20 @@ impl ContactState {
         self.hold(part);
         self.integrate(part);
         let settings = &self.setup.settings;
+        let ratio = part.info.delta_time / self.last_length;
+        // Few nodes may be too little to restrain a body that rocks.
+        let keeps = settings.set_at_start == SetAtStart::Kept && !self.repeated;
+        let in_contact = if keeps { self.pairing.of_bodies_in_contact(part, &self.states) } else { Vec::new() };
         let start = match settings.search.check {
             GapCheck::DirectCheck => ActivationCriterion::Touching(&self.pairing.touching),
             GapCheck::NoCheck => ActivationCriterion::GapBelow(f64::MAX),
             GapCheck::CheckMapping if settings.simple_search => ActivationCriterion::ShareOfMeshSize,
+            GapCheck::CheckMapping if keeps => ActivationCriterion::Kept {
+                range: self.setup.near(),
+                in_contact: &in_contact,
+                ratio,
+                least: self.setup.tolerances.length,
+            },
             GapCheck::CheckMapping => ActivationCriterion::GapBelow(self.setup.near()),
         };
         let rule = self.setup.parameters.slip_rule;

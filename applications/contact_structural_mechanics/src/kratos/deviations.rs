@@ -92,6 +92,13 @@ pub const DEVIATIONS: &[Deviation] = &[
         source: "base_contact_search_process.cpp; penetrated facets have no counterpart",
     },
     Deviation {
+        of: &[ALM, PENALTY, LAGRANGIAN, UZAWA],
+        key: "search_parameters.set_at_start",
+        kratos: "all nodes that are near a master begin every step in contact, and leave it ring by ring",
+        here: "between bodies in contact the set of the last step is kept: a step takes half as many iterations",
+        source: "base_contact_search_process.cpp",
+    },
+    Deviation {
         of: &[ALM, PENALTY],
         key: "slip_step_reset_frequency",
         kratos: "all nodes begin every step in stick",

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use zelus_core::Result;
 use zelus_core::diagnostics::{Diagnostic, unfit};
 use zelus_core::entities::{EntityBlock, require_kind};
-use zelus_core::model::{EntityRole, ModelPart};
+use zelus_core::model::{EntityRole, ModelPart, bodies_of_nodes};
 use zelus_core::parallel;
 use zelus_core::vector3::dot;
 
@@ -146,6 +146,23 @@ impl Pairing {
     /// Slave nodes of the slave facets of each interface.
     pub(crate) fn slaves_by_interface(&self) -> Vec<Vec<SlaveIndex>> {
         (0..self.interfaces.len()).map(|at| self.slaves_of(at)).collect()
+    }
+
+    /// For each slave node, by place, whether its body is in contact with a body that it faces. Collective.
+    pub(crate) fn of_bodies_in_contact(&self, part: &ModelPart, states: &SlaveStates) -> Vec<bool> {
+        let (bodies, keys) = (bodies_of_nodes(part), self.keys());
+        let of_pair = |key: PairKey| {
+            let mut both = [self.slave(key), self.master(key)].map(|facet| bodies[facet.nodes[0] as usize]);
+            both.sort_unstable();
+            both
+        };
+        let touches = |key: PairKey| self.slaves_of_pair(key).iter().any(|&slave| states[slave].law.active);
+        let touching: BTreeSet<_> = keys.iter().filter(|&&key| touches(key)).map(|&key| of_pair(key)).collect();
+        let mut found = vec![false; self.patches.len()];
+        for &key in keys.iter().filter(|&&key| touching.contains(&of_pair(key))) {
+            self.slaves_of_pair(key).iter().for_each(|slave| found[slave.place()] = true);
+        }
+        found
     }
 
     /// Slave nodes of the slave facet of a pair.

@@ -18,6 +18,7 @@ use super::interaction_process::InteractionProcess;
 use super::interface_settings::{
     check_analysis, check_positive, check_search, segmentation, warn_of_revolution, without_computing_part,
 };
+use crate::active_set::SetAtStart;
 use crate::adaptation::{AdaptationSettings, ExplicitPenalty, PenaltyRule, UzawaSettings};
 use crate::compatibility::{FormulationUse, Refusal, refusal};
 use crate::friction::FrictionSettings;
@@ -46,6 +47,9 @@ struct ContactSearchKeys {
     database_step_update: usize,
     normal_orientation_threshold: f64,
     check_gap: GapCheck,
+    /// Processes whose steps do not iterate, or whose integration points decide, lack it.
+    #[serde(default)]
+    set_at_start: SetAtStart,
 }
 
 #[derive(Debug, Deserialize)]
@@ -277,6 +281,7 @@ fn interaction(
         },
         active_check_factor: whole.search_parameters.active_check_factor,
         simple_search: whole.search_parameters.simple_search,
+        set_at_start: if part_is_explicit { SetAtStart::Near } else { whole.search_parameters.set_at_start },
         adapt_search: whole.search_parameters.adapt_search,
         database_step_update: whole.search_parameters.database_step_update.max(1),
         given: GivenParameters {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use zelus_core::parameters::Interval;
 
+use crate::active_set::SetAtStart;
 use crate::adaptation::{AdaptationSettings, ExplicitPenalty, UzawaSettings};
 use crate::friction::FrictionSettings;
 use crate::interface::{GivenParameters, NodalNormals};
@@ -64,6 +65,8 @@ pub struct ContactSettings {
     pub active_check_factor: f64,
     /// Whether activation goes by 0.002 of the mesh size instead.
     pub simple_search: bool,
+    /// Which slave nodes of bodies in contact begin a step so.
+    pub set_at_start: SetAtStart,
     /// Whether the factors of the search grow with the ratio of the largest and the smallest mesh size.
     pub adapt_search: bool,
     /// Steps between searches.

@@ -38,6 +38,8 @@ pub struct SlaveKinematics {
     pub weighted_slip: [f64; 3],
     /// Gap with which it began the step near the master, else 0 (length).
     pub start_gap: f64,
+    /// Gap with which it began the step; 0 where nothing overlapped (length).
+    pub gap_at_start: f64,
 }
 
 /// State of the contact law at a slave node: active set, sliding, tractions.
