@@ -61,7 +61,7 @@ fn flat_cells_and_thin_walls_take_few_iterations() {
         ([50, 50, 2], [2.0, 2.0, 0.5], 30),
         ([40, 40, 4], [8.0, 5.0, 1.0], 26),
     ] {
-        let brick = Brick { cells, edges };
+        let brick = Brick::of_cells(cells, edges);
         let edges_held = [0, cells[0]].into_iter().flat_map(|i| (0..=cells[1]).map(move |j| [i, j]));
         let nodes = edges_held.flat_map(|[i, j]| (0..=cells[2]).map(move |k| [i, j, k]));
         let nodes = nodes.map(|[i, j, k]| brick.node(i, j, k)).collect();

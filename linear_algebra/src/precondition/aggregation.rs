@@ -10,6 +10,9 @@ use crate::parallel;
 pub(super) const NONE: u32 = u32::MAX;
 /// Share of the geometric mean of two diagonal blocks above which their coupling is strong.
 const STRONG: f64 = 0.02;
+/// The same for the inverse squares of distances, beside the sums of those of all couplings: cubes have all of their nodes near each other,
+/// cells three times as long as wide only those across.
+const NEAR: f64 = 0.02;
 /// Share of a vector that must be left after orthogonalisation for it to be kept.
 const INDEPENDENT: f64 = 1e-6;
 
@@ -21,6 +24,8 @@ pub(super) struct Tentative {
     pub(super) aggregates: usize,
     /// Body of each aggregate.
     pub(super) bodies: Vec<u32>,
+    /// Position of each aggregate, empty where those of blocks are not known.
+    pub(super) positions: Vec<[f64; 3]>,
     /// Rows of the prolongation, `height × modes` entries a block by columns.
     pub(super) values: Vec<f32>,
     /// The modes on the aggregates, as `modes` vectors of `aggregates × modes` entries.
@@ -30,39 +35,71 @@ pub(super) struct Tentative {
 /// Rows of one task.
 const ROWS: usize = 256;
 
-/// The strong couplings between blocks, row after row.
+/// The strong couplings between units, lines of blocks or single blocks, row after row.
 struct Strong {
     /// Ends of the lists of the rows of each task, and the lists.
     parts: Vec<(Vec<u32>, Vec<u32>)>,
 }
 
-impl Strong {
-    fn new(couplings: &Couplings<'_>) -> Self {
-        let rows = couplings.matrix.rows;
-        let of_task = |task: usize| {
-            let (mut ends, mut lists) = (Vec::with_capacity(ROWS), Vec::new());
-            for i in task * ROWS..((task + 1) * ROWS).min(rows) {
-                let strong = couplings.of(i).filter(|(_, square, both)| *square > (STRONG * STRONG) * both);
-                lists.extend(strong.map(|(j, _, _)| j));
-                ends.push(lists.len() as u32);
-            }
-            (ends, lists)
-        };
-        Self { parts: parallel::map(rows.div_ceil(ROWS), 1, of_task) }
-    }
+/// Couplings of a unit with another one.
+struct UnitCoupling {
+    unit: u32,
+    /// Sum of the [nearness](Couplings::nearness) of their blocks.
+    nearness: f64,
+    has_strong: bool,
+}
 
-    /// The couplings between lines, and blocks that are in none; `unit` says which of these a block is or is in.
-    fn between(&self, unit: &[u32], units: usize) -> Self {
-        let mut members: Vec<Vec<u32>> = vec![Vec::new(); units];
-        unit.iter().enumerate().for_each(|(block, &unit)| members[unit as usize].push(block as u32));
+impl Strong {
+    /// Between units of these members; `unit` says which of them a block is or is in.
+    fn new(couplings: &Couplings<'_>, members: &[Vec<u32>], unit: &[u32]) -> Self {
+        // Nodes that a cell couples are near or far: of flat and long cells all couplings are large, those along their
+        // long edges as parts of a mass matrix, which stiffens no mode that changes along these.
+        let of_unit = |own: usize, list: &mut Vec<UnitCoupling>| {
+            list.clear();
+            for &i in &members[own] {
+                list.extend(couplings.of(i as usize).filter(|(j, ..)| unit[*j as usize] as usize != own).map(
+                    |(j, square, both)| UnitCoupling {
+                        unit: unit[j as usize],
+                        nearness: couplings.nearness(i as usize, j as usize),
+                        has_strong: square > (STRONG * STRONG) * both,
+                    },
+                ));
+            }
+            if members[own].len() > 1 {
+                list.sort_by_key(|coupling| coupling.unit);
+                list.dedup_by(|next, kept| {
+                    let is_same = next.unit == kept.unit;
+                    if is_same {
+                        kept.nearness += next.nearness;
+                        kept.has_strong |= next.has_strong;
+                    }
+                    is_same
+                });
+            }
+        };
+        let units = members.len();
+        let sum = |own: usize, list: &mut Vec<UnitCoupling>| {
+            of_unit(own, list);
+            list.iter().map(|coupling| coupling.nearness).filter(|nearness| nearness.is_finite()).sum::<f64>()
+        };
+        let tasks = |task: usize| task * ROWS..((task + 1) * ROWS).min(units);
+        let sums_of = |task: usize| {
+            let mut list = Vec::new();
+            tasks(task).map(|own| sum(own, &mut list)).collect::<Vec<f64>>()
+        };
+        let sums = match couplings.positions {
+            [] => vec![0.0; units],
+            _ => parallel::map(units.div_ceil(ROWS), 1, sums_of).concat(),
+        };
         let of_task = |task: usize| {
-            let (mut ends, mut lists) = (Vec::with_capacity(ROWS), Vec::<u32>::new());
-            for own in task * ROWS..((task + 1) * ROWS).min(units) {
-                let near = members[own].iter().flat_map(|&block| self.of(block as usize));
-                let mut near: Vec<u32> = near.map(|&j| unit[j as usize]).filter(|&j| j as usize != own).collect();
-                near.sort_unstable();
-                near.dedup();
-                lists.extend(near);
+            let (mut ends, mut lists, mut list) = (Vec::with_capacity(ROWS), Vec::new(), Vec::new());
+            for own in tasks(task) {
+                of_unit(own, &mut list);
+                let is_near = |coupling: &UnitCoupling| {
+                    coupling.nearness > NEAR * (sums[own] * sums[coupling.unit as usize]).sqrt()
+                };
+                let strong = list.iter().filter(|coupling| coupling.has_strong && is_near(coupling));
+                lists.extend(strong.map(|coupling| coupling.unit));
                 ends.push(lists.len() as u32);
             }
             (ends, lists)
@@ -82,14 +119,13 @@ impl Strong {
 /// is coupled to, it would make a coarse node of a whole surface. Lines stay whole.
 fn aggregate(couplings: &Couplings<'_>, lines: &Lines) -> (Vec<u32>, usize) {
     let is_hub = &couplings.is_hub;
-    let strong = Strong::new(couplings);
-    if lines.count() == 0 {
-        return aggregate_units(&strong, is_hub);
-    }
     let (unit, units) = lines.units(is_hub.len());
-    let mut hubs = vec![false; units];
-    unit.iter().zip(is_hub).for_each(|(&unit, &is_hub)| hubs[unit as usize] |= is_hub);
-    let (of, count) = aggregate_units(&strong.between(&unit, units), &hubs);
+    let (mut members, mut hubs) = (vec![Vec::new(); units], vec![false; units]);
+    for (block, (&unit, &is_hub)) in unit.iter().zip(is_hub).enumerate() {
+        members[unit as usize].push(block as u32);
+        hubs[unit as usize] |= is_hub;
+    }
+    let (of, count) = aggregate_units(&Strong::new(couplings, &members, &unit), &hubs);
     (unit.iter().map(|&unit| of[unit as usize]).collect(), count)
 }
 
@@ -176,7 +212,20 @@ pub(super) fn coarsen(couplings: &Couplings<'_>, lines: &Lines, near_null_space:
         }
     }
     let bodies = members.iter().map(|list| bodies[list[0]]).collect();
-    Tentative { aggregate, aggregates, bodies, values, modes: coarse }
+    let positions = match couplings.positions {
+        [] => Vec::new(),
+        positions => members.iter().map(|list| middle(list, positions)).collect(),
+    };
+    Tentative { aggregate, aggregates, bodies, positions, values, modes: coarse }
+}
+
+/// The mean of the positions of these blocks, of each coordinate where it is known.
+fn middle(list: &[usize], positions: &[[f64; 3]]) -> [f64; 3] {
+    std::array::from_fn(|axis| {
+        let known = list.iter().map(|&i| positions[i][axis]).filter(|coordinate| !coordinate.is_nan());
+        let (sum, count) = known.fold((0.0, 0.0), |(sum, count), coordinate| (sum + coordinate, count + 1.0));
+        sum / count
+    })
 }
 
 /// Orthonormal vectors on the blocks of `list` that span the near-null space there, one after the other, and each of its
@@ -234,7 +283,7 @@ mod tests {
                 row.block(points as u32)[0] = -1.0;
             }
         });
-        let (of, count) = aggregate(&Couplings::new(&chain, &vec![0; points + 1]), &Lines::default());
+        let (of, count) = aggregate(&Couplings::new(&chain, &vec![0; points + 1], &[]), &Lines::default());
         assert_eq!(of.iter().filter(|&&a| a == of[points]).count(), 1);
         assert_eq!(count, 1 + points / 3);
         assert!(of.iter().all(|&a| a != NONE));
@@ -247,6 +296,37 @@ mod tests {
         let full = BlockMatrix::from_rows([points; 2], [1, 1], |i, row| {
             (0..points).for_each(|j| row.block(j as u32)[0] = if i == j { points as f32 } else { -1.0e3 });
         });
-        assert_eq!(aggregate(&Couplings::new(&full, &vec![0; points]), &Lines::default()).1, 1);
+        assert_eq!(aggregate(&Couplings::new(&full, &vec![0; points], &[]), &Lines::default()).1, 1);
+    }
+
+    /// ANALYTIC: nodes of a grid with equal couplings in the cells beside each, as flat and long cells have them, by the lengths of their
+    /// edges. Aggregates of cubes are cubes of 27; those of long cells join nodes across alone, those of flat ones nodes along the short edge.
+    #[test]
+    fn aggregates_go_along_short_edges() {
+        let count = 9;
+        let at = |i: usize| [i % count, i / count % count, i / (count * count)];
+        let grid = BlockMatrix::from_rows([count.pow(3); 2], [1, 1], |i, row| {
+            for j in (0..count.pow(3)).filter(|&j| at(i).iter().zip(at(j)).all(|(a, b)| a.abs_diff(b) < 2)) {
+                row.block(j as u32)[0] = if i == j { 26.0 } else { -1.0 };
+            }
+        });
+        let sizes = |edges: [f64; 3]| {
+            let positions: Vec<[f64; 3]> =
+                (0..count.pow(3)).map(|i| std::array::from_fn(|axis| at(i)[axis] as f64 * edges[axis])).collect();
+            let bodies = vec![0; count.pow(3)];
+            let (of, aggregates) = aggregate(&Couplings::new(&grid, &bodies, &positions), &Lines::default());
+            (0..aggregates as u32)
+                .map(|a| {
+                    let members: Vec<[usize; 3]> = (0..of.len()).filter(|&i| of[i] == a).map(at).collect();
+                    [0, 1, 2].map(|axis| {
+                        let along = || members.iter().map(|place| place[axis]);
+                        1 + along().max().expect("a member") - along().min().expect("a member")
+                    })
+                })
+                .collect::<Vec<_>>()
+        };
+        assert!(sizes([1.0, 1.0, 1.0]).iter().all(|size| size.iter().all(|&nodes| nodes > 1)));
+        assert!(sizes([1.0, 1.0, 10.0]).iter().all(|size| size[2] == 1 && size[0] > 1 && size[1] > 1));
+        assert!(sizes([10.0, 10.0, 1.0]).iter().all(|size| size[..2] == [1, 1] && size[2] > 1));
     }
 }

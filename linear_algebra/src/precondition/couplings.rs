@@ -15,6 +15,7 @@ const ROWS: usize = 256;
 pub(super) struct Couplings<'a> {
     pub(super) matrix: &'a BlockMatrix,
     pub(super) bodies: &'a [u32],
+    pub(super) positions: &'a [[f64; 3]],
     /// Which blocks are hubs, e.g. the reference node of a coupling.
     pub(super) is_hub: Vec<bool>,
     /// Squares of the norms of the diagonal blocks.
@@ -22,8 +23,9 @@ pub(super) struct Couplings<'a> {
 }
 
 impl<'a> Couplings<'a> {
-    /// Couplings in the own rows of a matrix; `bodies` says which each block is of.
-    pub(super) fn new(matrix: &'a BlockMatrix, bodies: &'a [u32]) -> Self {
+    /// Couplings in the own rows of a matrix; `bodies` says which each block is of, and `positions` where it is, with coordinates that are
+    /// not numbers where they are not known. There may be no positions.
+    pub(super) fn new(matrix: &'a BlockMatrix, bodies: &'a [u32], positions: &'a [[f64; 3]]) -> Self {
         let blocks: usize = (0..matrix.rows).map(|i| matrix.row(i).0.len()).sum();
         let is_hub = |i| {
             let length = matrix.row(i).0.len();
@@ -34,7 +36,7 @@ impl<'a> Couplings<'a> {
             let (columns, values) = matrix.row(i);
             columns.binary_search(&(i as u32)).map_or(0.0, |at| square(&values[at * size..(at + 1) * size]))
         });
-        Self { matrix, bodies, is_hub: (0..matrix.rows).map(is_hub).collect(), diagonal }
+        Self { matrix, bodies, positions, is_hub: (0..matrix.rows).map(is_hub).collect(), diagonal }
     }
 
     /// The blocks that a block is coupled to, with the square of the norm of the coupling and the geometric mean of those of both diagonal
@@ -47,6 +49,13 @@ impl<'a> Couplings<'a> {
         blocks
             .filter(move |(j, _)| is_neighbour(**j as usize))
             .map(move |(&j, block)| (j, square(block), (self.diagonal[i] * self.diagonal[j as usize]).sqrt()))
+    }
+
+    /// One over the square of the distance of two blocks, infinity where that is not known.
+    pub(super) fn nearness(&self, i: usize, j: usize) -> f64 {
+        let [Some(a), Some(b)] = [i, j].map(|block| self.positions.get(block)) else { return f64::INFINITY };
+        let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).filter(|square| !square.is_nan());
+        1.0 / squares.sum::<f64>()
     }
 }
 

@@ -332,7 +332,7 @@ mod tests {
     fn lines_go_where_couplings_dominate() {
         let lines = |points: [usize; 3], through: f32| {
             let matrix = grid(points, through);
-            let lines = Lines::new(&Couplings::new(&matrix, &vec![0; matrix.rows]));
+            let lines = Lines::new(&Couplings::new(&matrix, &vec![0; matrix.rows], &[]));
             assert!(lines.is_sound(matrix.rows));
             let all = (0..lines.count()).map(|line| lines.blocks(line).to_vec());
             let apart = points[0] * points[1];

@@ -168,11 +168,12 @@ impl TryFrom<SavedMultigrid> for Multigrid {
 
 impl Multigrid {
     /// Builds the hierarchy on the own rows of `matrix`, whose near-null vectors have one entry for each of them; no coarse
-    /// motion is one of two bodies, and `bodies` says which each block is of. Where the mesh is of second order the first coarse space is
-    /// that of its `corners`. Collective.
+    /// motion is one of two bodies, and `bodies` says which each block is of, `positions` where it is. Where the mesh is of second order
+    /// the first coarse space is that of its `corners`. Collective.
     pub(super) fn new(
         mut matrix: Arc<BlockMatrix>,
         mut bodies: Vec<u32>,
+        mut positions: Vec<[f64; 3]>,
         mut near_null_space: Vec<Vec<f64>>,
         mut ghosts: Ghosts,
         corners: Option<Corners<'_>>,
@@ -182,8 +183,9 @@ impl Multigrid {
             ghosts.total((matrix.rows * matrix.height) as f64) as usize > COARSEST
         };
         if let Some(Corners { mut space, rows }) = corners.filter(|_| is_large(&matrix, &ghosts)) {
-            let lines = Lines::new(&Couplings::new(&matrix, &bodies));
+            let lines = Lines::new(&Couplings::new(&matrix, &bodies, &positions));
             (bodies, near_null_space) = (std::mem::take(&mut space.bodies), std::mem::take(&mut space.modes));
+            positions = std::mem::take(&mut space.positions);
             let (level, next, of_next) = Level::of_corners(matrix, lines, ghosts, space, rows);
             levels.push(level);
             (matrix, ghosts) = (Arc::new(next), of_next);
@@ -195,7 +197,7 @@ impl Multigrid {
                 break;
             }
             // Couplings of aggregates, which are of motions of unlike units, show no lines.
-            let couplings = Couplings::new(&matrix, &bodies);
+            let couplings = Couplings::new(&matrix, &bodies, &positions);
             let lines = if levels.len() == of_nodes { Lines::new(&couplings) } else { Lines::default() };
             let mut coarse = coarsen(&couplings, &lines, &near_null_space);
             let aggregates = ghosts.total(coarse.aggregates as f64) as usize;
@@ -203,6 +205,7 @@ impl Multigrid {
                 break;
             }
             (bodies, near_null_space) = (std::mem::take(&mut coarse.bodies), std::mem::take(&mut coarse.modes));
+            positions = std::mem::take(&mut coarse.positions);
             let (level, next, of_next) = Level::new(matrix, lines, ghosts, coarse, near_null_space.len());
             levels.push(level);
             (matrix, ghosts) = (Arc::new(next), of_next);

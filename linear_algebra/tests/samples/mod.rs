@@ -38,34 +38,43 @@ fn hexahedron(edges: [f64; 3]) -> [[f64; 24]; 24] {
     stiffness
 }
 
-/// A box of `cells` in each direction, with edges of these lengths.
+/// A box of cells between these places in each direction.
 pub struct Brick {
-    pub cells: [usize; 3],
-    pub edges: [f64; 3],
+    pub stations: [Vec<f64>; 3],
 }
 
 impl Brick {
     /// Of unit cubes.
     pub fn of_cubes(cells: [usize; 3]) -> Self {
-        Self { cells, edges: [1.0; 3] }
+        Self::of_cells(cells, [1.0; 3])
+    }
+
+    /// Of so many cells with edges of these lengths.
+    pub fn of_cells(cells: [usize; 3], edges: [f64; 3]) -> Self {
+        Self { stations: std::array::from_fn(|d| (0..=cells[d]).map(|at| at as f64 * edges[d]).collect()) }
+    }
+
+    /// Number of nodes in each direction.
+    pub fn counts(&self) -> [usize; 3] {
+        std::array::from_fn(|d| self.stations[d].len())
     }
 
     pub fn nodes(&self) -> usize {
-        self.cells.iter().map(|c| c + 1).product()
+        self.counts().iter().product()
     }
 
     pub fn node(&self, i: usize, j: usize, k: usize) -> usize {
-        i + (self.cells[0] + 1) * (j + (self.cells[1] + 1) * k)
+        i + self.counts()[0] * (j + self.counts()[1] * k)
     }
 
     /// The six rigid-body modes, with equation `3 node + direction`.
     pub fn rigid_motions(&self) -> Vec<Vec<f64>> {
         let mut motions = vec![vec![0.0; 3 * self.nodes()]; 6];
-        for k in 0..=self.cells[2] {
-            for j in 0..=self.cells[1] {
-                for i in 0..=self.cells[0] {
-                    let (node, at) = (self.node(i, j, k), [i, j, k].map(|at| at as f64));
-                    let at: [f64; 3] = std::array::from_fn(|d| at[d] * self.edges[d]);
+        let [x, y, z] = &self.stations;
+        for k in 0..z.len() {
+            for j in 0..y.len() {
+                for i in 0..x.len() {
+                    let (node, at) = (self.node(i, j, k), [x[i], y[j], z[k]]);
                     for d in 0..3 {
                         let (e, f) = ((d + 1) % 3, (d + 2) % 3);
                         motions[d][3 * node + d] = 1.0;
@@ -81,18 +90,21 @@ impl Brick {
     /// Nodes of the layer `k` of the third direction.
     pub fn layer(&self, k: usize) -> Vec<usize> {
         let mut nodes = Vec::new();
-        for j in 0..=self.cells[1] {
-            nodes.extend((0..=self.cells[0]).map(|i| self.node(i, j, k)));
+        let [x, y, _] = self.counts();
+        for j in 0..y {
+            nodes.extend((0..x).map(|i| self.node(i, j, k)));
         }
         nodes
     }
 
     /// Adds the stiffness, with equation `3 (first + node) + direction`, to a list of triplets.
     pub fn stiffness(&self, first: usize, scale: f64, triplets: &mut Vec<(usize, usize, f64)>) {
-        let element = hexahedron(self.edges);
-        for k in 0..self.cells[2] {
-            for j in 0..self.cells[1] {
-                for i in 0..self.cells[0] {
+        let edge = |d: usize, at: usize| self.stations[d][at + 1] - self.stations[d][at];
+        let [x, y, z] = self.counts();
+        for k in 0..z - 1 {
+            for j in 0..y - 1 {
+                for i in 0..x - 1 {
+                    let element = hexahedron([edge(0, i), edge(1, j), edge(2, k)]);
                     let node = |a: usize| first + self.node(i + (a & 1), j + ((a >> 1) & 1), k + ((a >> 2) & 1));
                     for (row, values) in element.iter().enumerate() {
                         for (column, value) in values.iter().enumerate() {

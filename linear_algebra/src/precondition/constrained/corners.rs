@@ -15,9 +15,9 @@ impl Constrained {
         if (equation as usize) < matrix.rows { matrix.row(equation as usize) } else { (&[], &[]) }
     }
 
-    /// The coarse space of corners, which have all unknowns of their nodes, with the near-null space on them and a body for each;
+    /// The coarse space of corners, which have all unknowns of their nodes, with the near-null space on them, a body for each and their positions;
     /// `None` where few nodes lie between corners. Collective.
-    pub(super) fn corners(&self, system: &System<'_>, bodies: &[u32]) -> Option<Tentative> {
+    pub(super) fn corners(&self, system: &System<'_>, bodies: &[u32], positions: &[[f64; 3]]) -> Option<Tentative> {
         let (w, matrix) = (self.width, &system.layout.corner_interpolation);
         if !self.ghosts.any(matrix.rows > 0) {
             return None;
@@ -40,7 +40,8 @@ impl Constrained {
             |vector: &Vec<f64>| corners.iter().flat_map(|&b| &vector[b * w..(b + 1) * w]).copied().collect();
         let modes = self.rigid_body_modes(system).iter().map(of_corners).collect();
         let bodies = corners.iter().map(|&block| bodies[block]).collect();
-        Some(Tentative { aggregate, aggregates: corners.len(), bodies, values: Vec::new(), modes })
+        let positions = corners.iter().filter_map(|&block| positions.get(block)).copied().collect();
+        Some(Tentative { aggregate, aggregates: corners.len(), bodies, positions, values: Vec::new(), modes })
     }
 
     /// Calls `add` with a slot of an own block, the place of an unknown at a corner and its factor, for all of them.

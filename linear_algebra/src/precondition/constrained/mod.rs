@@ -16,6 +16,7 @@ mod apply;
 mod corners;
 mod elimination;
 mod group;
+mod positions;
 mod reduced_blocks;
 
 use super::blocks::Blocks;
@@ -396,9 +397,10 @@ impl Constrained {
 
     /// The hierarchy of the reduced system; collective.
     pub(crate) fn hierarchy(&self, system: &System<'_>, left: &Blocks) -> Multigrid {
-        let bodies = self.bodies(system, left);
+        let (bodies, positions) = (self.bodies(system, left), self.positions(system));
         let rows = |block: usize, add: &mut dyn FnMut(usize, u32, f64)| self.interpolate(system, block, add);
-        let corners = self.corners(system, &bodies).map(|space| Corners { space, rows: &rows });
-        Multigrid::new(left.matrix.clone(), bodies, self.near_null_space(system), self.blocks.clone(), corners)
+        let corners = self.corners(system, &bodies, &positions).map(|space| Corners { space, rows: &rows });
+        let (modes, ghosts) = (self.near_null_space(system), self.blocks.clone());
+        Multigrid::new(left.matrix.clone(), bodies, positions, modes, ghosts, corners)
     }
 }
