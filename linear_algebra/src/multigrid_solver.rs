@@ -32,6 +32,8 @@ const LOOSEST_FORCING_TERM: f64 = 0.5;
 /// Accuracy of a solve, relative to the gain of the one before for the whole system: beyond it the constraints that the blocks leave
 /// out count.
 const WORTH: f64 = 0.3;
+/// Share of the digits asked of a solve that the residual of the whole system gains at least.
+const GAINED: f64 = 0.5;
 /// Growth of the iterations by digit, and their number beside it, from which on the hierarchy is made anew.
 const STALE: (f64, f64) = (1.3, 0.3);
 /// Digits from which on they say how well a hierarchy does.
@@ -46,6 +48,8 @@ const DRIFT: f64 = 10.0;
 /// Nanoseconds of an iteration for an entry of the matrix, of a factorisation in space for the square of the equations, and of that of
 /// an interface for the cube of its own: by their ratios alone it is judged which is less.
 const COSTS: [f64; 3] = [4.0, 0.8, 0.02];
+/// Iterations that levels cost as much as.
+const SET_UP: usize = 16;
 /// Equations up to which factors may take over; more would take more than a gigabyte.
 const FALLS_BACK_UP_TO: usize = 70_000;
 
@@ -110,6 +114,8 @@ struct SolveHistory {
     previous_solutions: PreviousSolutions,
     /// Solves one after the other that multigrid did not do; one more once that is told.
     failures: usize,
+    /// Graph of the bulk for which solves of the reduced system gained little for the whole one: cycles alone serve it.
+    takes_cycles: Option<u64>,
     /// Whether a solve would have paid for a factorisation: the direct engine solves.
     has_fallen_back: bool,
 }
@@ -161,7 +167,7 @@ impl MultigridSolver {
         self.shares(system.free(), system.bulk.entries())
     }
 
-    /// Iterations of a solve after which a factorisation would have been cheaper.
+    /// Iterations of a solve after which a factorisation would have been cheaper than these and the levels.
     fn patience(&self, system: &System<'_>) -> usize {
         let (equations, entries) = (system.free(), system.bulk.entries());
         let may_fall_back = self.settings.falls_back && system.shared.is_none() && equations <= FALLS_BACK_UP_TO;
@@ -169,7 +175,8 @@ impl MultigridSolver {
             let coupled = |coupling: &Csr| (0..coupling.rows).filter(|&i| !coupling.row(i).0.is_empty()).count();
             let [iteration, bulk, interface] = COSTS;
             let interface = interface * (system.coupling.map_or(0, coupled) as f64).powi(3);
-            ((bulk * (equations as f64).powi(2) + interface) / (iteration * entries as f64)) as usize
+            let iterations = (bulk * (equations as f64).powi(2) + interface) / (iteration * entries as f64);
+            (iterations as usize).saturating_sub(SET_UP)
         } else {
             usize::MAX
         }
@@ -266,7 +273,9 @@ impl MultigridSolver {
                 Some(self.history.previous_solutions.start(system.bulk_graph, ghosts, product, &b, enough, &mut start));
         }
         let (tolerance, most) = (self.tolerance, self.settings.iterations.min(most));
-        let (mut iterations, mut before, mut rate, mut solves_left) = (0, None, 0.0_f64, !hierarchy.is_old);
+        let takes_cycles = &mut self.history.takes_cycles;
+        let (mut iterations, mut before, mut rate, mut asked) = (0, None, 0.0_f64, f64::INFINITY);
+        let mut solves_left = !hierarchy.is_old;
         let (cache, inner) = (&mut self.reduced, &mut self.inner);
         let knows_most = system.shared.is_none() && cache.has_bulk_of(system);
         let pays = PAYS[usize::from(knows_most)];
@@ -279,12 +288,15 @@ impl MultigridSolver {
                 solves_left |= -hierarchy.last * share.log10() > pays;
             }
             rate = before.replace(share).map_or(rate, |before| before / share);
+            if rate > asked.powf(GAINED) {
+                *takes_cycles = Some(system.bulk_graph);
+            }
             let solve = |b: &mut [f64]| {
-                if solves_left {
+                if solves_left && *takes_cycles != Some(system.bulk_graph) {
                     let solves = (share.ln() / REACHED.ln()).ceil().max(1.0);
-                    let forcing_term = share.powf(1.0 / solves).max(WORTH * rate).min(LOOSEST_FORCING_TERM);
+                    asked = share.powf(1.0 / solves).max(WORTH * rate).min(LOOSEST_FORCING_TERM);
                     let reduced = cache.up_to_date(constrained, system);
-                    iterations += reduced.solve(&hierarchy.levels, inner, b, forcing_term, room);
+                    iterations += reduced.solve(&hierarchy.levels, inner, b, asked, room);
                 } else {
                     iterations += 1;
                     hierarchy.levels.apply_double(b, hierarchy.size);

@@ -52,12 +52,12 @@ fn iterations_hardly_grow() {
     assert!(iterations[2] <= iterations[0] + 10 && iterations[2] < 35, "{iterations:?}");
 }
 
-/// REGRESSION: 19, 38, 24 and 20 iterations were measured, 33, 132, 99 and 200 with smoothers of single nodes.
+/// REGRESSION: 17, 30, 23 and 20 iterations were measured, 33, 132, 99 and 200 with smoothers of single nodes.
 #[test]
 fn flat_cells_and_thin_walls_take_few_iterations() {
     for (cells, edges, most) in [
-        ([20; 3], [4.0, 4.0, 1.0], 25),
-        ([20; 3], [10.0, 10.0, 1.0], 45),
+        ([20; 3], [4.0, 4.0, 1.0], 22),
+        ([20; 3], [10.0, 10.0, 1.0], 36),
         ([50, 50, 2], [2.0, 2.0, 0.5], 30),
         ([40, 40, 4], [8.0, 5.0, 1.0], 26),
     ] {
@@ -71,6 +71,78 @@ fn flat_cells_and_thin_walls_take_few_iterations() {
         println!("{cells:?} cells of {edges:?}: {} iterations, {:.1e}", report.iterations, report.relative_residual);
         assert_eq!((report.engine, report.fallback), ("multigrid", None));
         assert!(report.relative_residual < 1e-6 && report.iterations <= most, "{cells:?} of {edges:?}");
+    }
+}
+
+/// Places at equal distances from zero on.
+fn even(cells: usize, length: f64) -> Vec<f64> {
+    (0..=cells).map(|at| length * at as f64 / cells as f64).collect()
+}
+
+/// Places from zero on, at distances that grow evenly by this ratio in all, of which the smallest is one.
+fn growing(cells: usize, ratio: f64) -> Vec<f64> {
+    let edge = |at: usize| ratio.powf(at as f64 / (cells - 1) as f64);
+    (0..=cells).map(|at| (0..at).map(edge).sum()).collect()
+}
+
+/// Places from zero on: some at equal distances of one, the rest at distances that grow by 1.7 from each to the next.
+fn refined(equal: usize, growing: usize) -> Vec<f64> {
+    (0..=equal + growing)
+        .map(|at| at.min(equal) as f64 + (0..at.saturating_sub(equal)).map(|k| 1.7_f64.powi(k as i32 + 1)).sum::<f64>())
+        .collect()
+}
+
+/// Iterations for seven digits of a body that is held at its last layer, or at its first edge, by an uneven load and by an even one.
+fn iterations_of(stations: [Vec<f64>; 3], by_edge: bool) -> [usize; 2] {
+    let brick = Brick { stations };
+    let [x, y, z] = brick.counts();
+    let nodes = if by_edge {
+        (0..z).flat_map(|k| (0..y).map(move |j| [j, k])).map(|[j, k]| brick.node(0, j, k)).collect()
+    } else {
+        brick.layer(z - 1)
+    };
+    let (bulk, layout) = held(&brick, nodes);
+    let system = System::bulk(&layout, &bulk, Symmetry::PositiveDefinite);
+    let even: Vec<f64> = (0..3 * x * y * z).map(|i| [0.3, 0.5, 1.0][i % 3]).collect();
+    [load(bulk.rows), even].map(|rhs| {
+        let (_, report) = multigrid_to(1e-7, &system, &rhs);
+        assert_eq!((report.engine, report.fallback), ("multigrid", None));
+        assert!(report.relative_residual < 1e-6);
+        report.iterations
+    })
+}
+
+/// REGRESSION: 29 and 32, 23 and 28, 31 and 29, 38 and 43, 33 and 29 iterations were measured. With aggregates across long edges and solves in
+/// single precision alone it took 128 and 170, 116 and 142, more than 500, 319 and 427, more than 500.
+#[test]
+fn graded_and_long_cells_take_few_iterations() {
+    let flat = |unit: f64| growing(24, 1000.0).iter().map(|z| z * unit).collect::<Vec<f64>>();
+    for (name, stations, most) in [
+        ("refined towards a corner", [refined(8, 8), refined(8, 8), refined(0, 8)], [30, 35]),
+        ("1:1000, flat at one end", [even(16, 1.0), even(16, 1.0), flat(1.0 / 3000.0)], [30, 35]),
+        ("1:1000, long at the other", [even(16, 1.0), even(16, 1.0), flat(0.01)], [36, 36]),
+        ("1:1000 in each direction", [growing(16, 1000.0), growing(16, 1000.0), growing(16, 1000.0)], [44, 50]),
+        ("long cells of 1:20", [even(16, 1.0), even(16, 1.0), even(16, 20.0)], [36, 40]),
+    ] {
+        let found = iterations_of(stations, false);
+        println!("{name}: {found:?} iterations");
+        assert!(found.iter().zip(most).all(|(found, most)| *found <= most), "{name}: {found:?}");
+    }
+}
+
+/// REGRESSION: 43 and 43, 23 and 26, 35 and 40, 24 and 42 iterations were measured. Solves in single precision alone do not serve bodies so
+/// soft: it took 264 and 281, 82 and 88, 96 and 93, and more than 500 for the beam.
+#[test]
+fn soft_bodies_take_few_iterations() {
+    for (name, stations, most) in [
+        ("sheet of 1:100", [even(50, 100.0), even(50, 100.0), even(2, 1.0)], [48, 48]),
+        ("strip of 1:100", [even(100, 100.0), even(10, 10.0), even(2, 1.0)], [30, 35]),
+        ("block of flat cells", [even(20, 10.0), even(20, 10.0), even(20, 1.0)], [42, 46]),
+        ("beam of 1:100", [even(200, 100.0), even(2, 1.0), even(2, 1.0)], [32, 48]),
+    ] {
+        let found = iterations_of(stations, true);
+        println!("{name}: {found:?} iterations");
+        assert!(found.iter().zip(most).all(|(found, most)| *found <= most), "{name}: {found:?}");
     }
 }
 
@@ -245,7 +317,7 @@ fn levels_of_earlier_matrices_are_part_of_the_state() {
 /// A solve that costs more than a factorisation hands the rest of the run over; one that does not, or may not, keeps multigrid.
 #[test]
 fn the_direct_engine_takes_over_where_it_costs_less() {
-    let (bulk, layout) = clamped_box(8);
+    let (bulk, layout) = clamped_box(13);
     let system = System::bulk(&layout, &bulk, Symmetry::PositiveDefinite);
     let engines = |tolerance: f64, falls_back: bool| {
         let settings = MultigridSettings {

@@ -11,8 +11,8 @@ use super::single_precision::in_single;
 use crate::ghosts::Ghosts;
 use crate::iterations::Gmres;
 
-/// Iterations of a solve at most.
-const MOST: usize = 80;
+/// Iterations of a solve at most: more of them gain less than the next solve, which begins from a residual in double precision.
+const MOST: usize = 10;
 
 /// A matrix of blocks, own rows.
 pub(crate) struct Blocks {
