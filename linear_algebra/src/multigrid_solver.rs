@@ -45,8 +45,8 @@ const CHANGED: f64 = 0.01;
 /// Residual, as a multiple of the tolerance, that rounding in the recurrence of the residual excuses.
 const DRIFT: f64 = 10.0;
 
-/// Nanoseconds of an iteration for an entry of the matrix, of a factorisation in space for the square of the equations, and of that of
-/// an interface for the cube of its own: by their ratios alone it is judged which is less.
+/// Nanoseconds of an iteration for an entry of the matrix and of its levels, of a factorisation in space for the square of the
+/// equations, and of that of an interface for the cube of its own: by their ratios alone it is judged which is less.
 const COSTS: [f64; 3] = [4.0, 0.8, 0.02];
 /// Iterations that levels cost as much as.
 const SET_UP: usize = 16;
@@ -175,7 +175,9 @@ impl MultigridSolver {
             let coupled = |coupling: &Csr| (0..coupling.rows).filter(|&i| !coupling.row(i).0.is_empty()).count();
             let [iteration, bulk, interface] = COSTS;
             let interface = interface * (system.coupling.map_or(0, coupled) as f64).powi(3);
-            let iterations = (bulk * (equations as f64).powi(2) + interface) / (iteration * entries as f64);
+            let of_levels = self.hierarchy.as_ref().map_or(1.0, |hierarchy| hierarchy.levels.complexity());
+            let iteration = iteration * of_levels * entries as f64;
+            let iterations = (bulk * (equations as f64).powi(2) + interface) / iteration;
             (iterations as usize).saturating_sub(SET_UP)
         } else {
             usize::MAX

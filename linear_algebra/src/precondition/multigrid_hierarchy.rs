@@ -235,6 +235,14 @@ impl Multigrid {
         self.coarsest.ghosts.ranks().is_some()
     }
 
+    /// Entries of all levels, as a multiple of those of the finest; here.
+    pub(crate) fn complexity(&self) -> f64 {
+        let matrices = self.levels.iter().map(|level| &level.matrix).chain([&self.last]);
+        let entries = |matrix: &BlockMatrix| (0..matrix.rows).map(|i| matrix.row(i).1.len()).sum::<usize>() as f64;
+        let counts: Vec<f64> = matrices.map(|matrix| entries(matrix)).collect();
+        counts.iter().sum::<f64>() / counts[0].max(1.0)
+    }
+
     /// As [`Multigrid::apply`] in double precision, for the matrix times `size`; collective.
     pub(crate) fn apply_double(&self, x: &mut [f64], size: f64) {
         let finest = self.levels.first().map_or(&self.coarsest.ghosts, |level| &level.ghosts);
