@@ -1,5 +1,7 @@
 //! Laws of friction that depend on the pressure and on the speed of sliding.
 
+use std::collections::BTreeMap;
+
 use serde_json::{Value, json};
 
 use crate::blocks::Vec3;
@@ -18,16 +20,16 @@ fn dragged(space: usize, kind: Kind, law: &str, numbers: &Value) -> Result<Vec<[
     let all = dragged_by((space, kind), (law, numbers), &json!({}), (SPEED, 5))?;
     let node =
         |(pressure, [x, y, z]): (f64, Vec3)| [pressure, (x * x + y * y + z * z - pressure * pressure).max(0.0).sqrt()];
-    Ok(all.into_iter().map(node).collect())
+    Ok(all.into_iter().map(|(pressure, traction, _)| node((pressure, traction))).collect())
 }
 
-/// As [`dragged`], with further parameters of the process and another way, in so many steps: pressures, and tractions on the block.
+/// As [`dragged`], with further parameters of the process and another way, in so many steps: pressures, tractions on the block, and slips of the last step.
 fn dragged_by(
     (space, kind): (usize, Kind),
     (law, numbers): (&str, &Value),
     extra: &Value,
     (way, steps): (f64, usize),
-) -> Result<Vec<(f64, Vec3)>, String> {
+) -> Result<Vec<(f64, Vec3, Vec3)>, String> {
     let mut scene = Scene::new(space);
     (scene.kind, scene.steps, scene.poisson) = (kind, steps, 0.2);
     let up = space - 1;
@@ -69,7 +71,7 @@ fn dragged_by(
         }
         let output = &mut deck["processes"]["json_output_process_list"][0]["Parameters"];
         output["model_part_name"] = json!("Structure.Bottom");
-        output["output_variables"] = json!(["CONTACT_PRESSURE", "CONTACT_TRACTION"]);
+        output["output_variables"] = json!(["CONTACT_PRESSURE", "CONTACT_TRACTION", "CONTACT_SLIP"]);
     });
     let output = zelus(folder.path(), &["run", DECK, "--threads", "1"]);
     if !output.status.success() {
@@ -78,9 +80,10 @@ fn dragged_by(
     let results = Results::read(&folder.path().join("results.json")).expect("results");
     let last = results.len() - 1;
     let pressure = results.nodal("CONTACT_PRESSURE", last);
-    let traction = ["X", "Y", "Z"].map(|axis| results.nodal(&format!("CONTACT_TRACTION_{axis}"), last));
-    let part = |node: &u64| traction.each_ref().map(|of| of.get(node).copied().unwrap_or(0.0));
-    Ok(pressure.iter().map(|(node, pressure)| (*pressure, part(node))).collect())
+    let of = |name: &str| ["X", "Y", "Z"].map(|axis| results.nodal(&format!("{name}_{axis}"), last));
+    let (traction, slip) = (of("CONTACT_TRACTION"), of("CONTACT_SLIP"));
+    let part = |of: &[BTreeMap<u64, f64>; 3], node: &u64| of.each_ref().map(|of| of.get(node).copied().unwrap_or(0.0));
+    Ok(pressure.iter().map(|(node, pressure)| (*pressure, part(&traction, node), part(&slip, node))).collect())
 }
 
 fn check(found: &[[f64; 2]], what: &str, right: impl Fn(f64) -> f64) {
@@ -89,6 +92,23 @@ fn check(found: &[[f64; 2]], what: &str, right: impl Fn(f64) -> f64) {
     for [pressure, traction] in found {
         let off = (traction - right(*pressure)).abs();
         assert!(off < 1e-6 * largest, "{what}: traction {traction:e} under pressure {pressure:e}, off by {off:e}");
+    }
+}
+
+/// ANALYTIC: between two states of steady sliding, alike but for a translation, each node slips by that, however many facets it crosses.
+/// The tolerance is that of the deflection in the first steps, which comes to rest in the later ones.
+#[test]
+fn slips_of_steps_longer_than_a_facet_are_whole() {
+    for (space, steps) in [(2, 2), (2, 20), (3, 2)] {
+        let numbers = json!({"FRICTION_COEFFICIENT": 0.3});
+        let way = 1.7;
+        let found = dragged_by((space, FRICTIONAL), ("Coulomb", &numbers), &json!({}), (way, steps)).expect("it runs");
+        let pressed = found.iter().filter(|(pressure, ..)| *pressure > 0.0);
+        assert!(pressed.clone().count() > 3, "{found:?}");
+        for (_, _, [x, y, z]) in pressed {
+            let slip = (x * x + y * y + z * z).sqrt();
+            assert!((slip / (way / steps as f64) - 1.0).abs() < 1e-4, "{space}D, {steps} steps: a slip of {slip}");
+        }
     }
 }
 
@@ -254,9 +274,9 @@ fn multipliers_slide_normal_to_the_ellipse() {
         let found = dragged_by((3, FRICTIONAL), ("Coulomb", &numbers), &extra, (1.9, 8)).expect("it runs");
         let square = ratio * ratio;
         let product = [square + (1.0 - square) * axis[0] * axis[0], (1.0 - square) * axis[0] * axis[1]];
-        let largest = found.iter().map(|(pressure, _)| *pressure).fold(0.0, f64::max);
-        assert!(found.iter().filter(|(pressure, _)| *pressure > 0.0).count() > 10, "{found:?}");
-        for (pressure, traction) in found {
+        let largest = found.iter().map(|(pressure, ..)| *pressure).fold(0.0, f64::max);
+        assert!(found.iter().filter(|(pressure, ..)| *pressure > 0.0).count() > 10, "{found:?}");
+        for (pressure, traction, _) in found {
             for c in 0..2 {
                 let right = -friction * pressure * product[c] / product[0].sqrt();
                 let off = (traction[c] - right).abs();

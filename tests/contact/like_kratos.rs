@@ -44,6 +44,7 @@ const fn case(folder: &'static str, changes: Change) -> Witness {
 const WEIGHTS: Witness = Test { file: "contact/mpc.rs", name: "weights_by_facets_are_had_by_name" };
 const SIDES: Witness = Test { file: "contact/mpc.rs", name: "sides_are_exchanged_where_supports_hold_the_slaves" };
 const BESIDE: Witness = Test { file: "contact/like_kratos.rs", name: "nodes_beside_the_master_bear_nothing" };
+const MARGIN: Witness = Test { file: "contact/like_kratos.rs", name: "nodes_within_a_margin_slide_on" };
 const ENERGY: Witness = Test { file: "steps/impact.rs", name: "energy_that_a_coarse_slave_makes_is_accepted_by_name" };
 const DEPTH: Witness =
     Test { file: "program/soundness.rs", name: "soft_penalties_are_refused_beyond_a_share_of_the_mesh" };
@@ -61,11 +62,7 @@ const WITNESSES: &[(&str, &str, Witness)] = &[
     (ALM, "slip_step_reset_frequency", case("contact_2d/friction_slide", Iterations)),
     (ALM, "absolute_operator_threshold", case("contact_2d/friction_slide_millimetres", Results(1e-7))),
     (ALM, "sliding_direction", case("contact_2d/friction_slide", Results(1e-6))),
-    (
-        ALM,
-        "slip_threshold",
-        Case { folder: "contact_2d/cattaneo_mindlin_light_coarse", like: false, changes: Iterations },
-    ),
+    (ALM, "slip_threshold", MARGIN),
     (ALM, "least_coverage", BESIDE),
     (ALM, "operator_threshold", Case { folder: "contact_2d/cattaneo_mindlin", like: false, changes: Results(1e-3) }),
     (PENALTY, "count_slivers", case("contact_2d/friction_penalty_slide", Results(1e-7))),
@@ -260,6 +257,18 @@ fn nodes_beside_the_master_bear_nothing() {
     let (ours, kratos) = (outcome(0.1), outcome(0.0));
     let apart = difference(&ours, &kratos);
     assert!(apart > 1e-3, "results change by {apart:e}");
+}
+
+/// Where all near nodes begin a step in contact, some turn back on the way to its end.
+#[test]
+fn nodes_within_a_margin_slide_on() {
+    let outcome = |margin: f64| {
+        run("contact_2d/cattaneo_mindlin_light_coarse", false, |deck| {
+            set(deck, ALM, "search_parameters.set_at_start", &json!("near"));
+            set(deck, ALM, "slip_threshold", &json!(margin));
+        })
+    };
+    assert_ne!(outcome(0.0).iterations, outcome(2e-2).iterations);
 }
 
 /// ANALYTIC: a converged state does not depend on the set with which its step begins; friction, whose states depend on their past, agrees

@@ -76,6 +76,10 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
             let pair = &mut block.pairs_mut()[at];
             (pair.overlapping, pair.area) = (overlapping, integral.area);
             if !overlapping {
+                // Facets that nodes have left in this step count in their slip.
+                for (local, &node) in block.slaves(at).iter().enumerate() {
+                    sums[node].slip = add(sums[node].slip, integral.slip[local]);
+                }
                 continue;
             }
             for (local, &node) in block.slaves(at).iter().enumerate() {

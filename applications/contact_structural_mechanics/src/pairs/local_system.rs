@@ -49,6 +49,8 @@ pub struct PairSystem<'a> {
     pub multipliers: &'a [[f64; 3]],
     /// Its past.
     pub history: &'a PairHistory,
+    /// Whether it has no overlap any more, and counts in the slip alone.
+    pub is_left: bool,
     /// Points of its overlap, once they have been looked for.
     pub points: OnceCell<PairPoints>,
 }
@@ -84,6 +86,14 @@ impl PairSystem<'_> {
     pub fn size(&self) -> usize {
         let count = self.law.multiplier().count(self.geometry.space());
         self.geometry.unknowns() + self.geometry.slave.len() * count
+    }
+
+    /// The operators of the pair, which `found` gives: zero for one that is left.
+    pub fn present(&self, found: &dyn Fn() -> Overlap<Operators<f64>>) -> Overlap<Operators<f64>> {
+        if !self.is_left {
+            return found();
+        }
+        Overlap::Cells(Operators::zero(self.geometry.slave_shape, self.geometry.master_shape))
     }
 
     /// Forces and rows at the slave nodes.
@@ -175,7 +185,9 @@ impl PairSystem<'_> {
                 operators.clear();
             }
             let geometry = seeded(first);
-            if knows.find_operators(&geometry, self.settings, self.points(), operators).cells().is_none() {
+            if !self.is_left
+                && knows.find_operators(&geometry, self.settings, self.points(), operators).cells().is_none()
+            {
                 return;
             }
             let lanes = LANES.min(unknowns - first);
@@ -259,9 +271,11 @@ impl PairSystem<'_> {
             if first > 0 {
                 operators.clear();
             }
-            let found = find_operators_by_normals(self.geometry, self.settings, self.points(), first, operators);
-            if found.cells().is_none() {
-                return;
+            if !self.is_left {
+                let found = find_operators_by_normals(self.geometry, self.settings, self.points(), first, operators);
+                if found.cells().is_none() {
+                    return;
+                }
             }
             let seeded = self.geometry.seeded_by_normals(first);
             let known = LANES.min(count - first);

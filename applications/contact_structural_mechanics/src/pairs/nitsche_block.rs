@@ -248,7 +248,7 @@ impl ContactBlock for NitscheBlock {
     /// meets the same element, says so.
     fn integrate(&self, present: IntegrationState<'_>) -> Vec<Integral> {
         let IntegrationState { view, states, .. } = present;
-        self.pairs.integrate(present, &|at, geometry, operators, out| {
+        self.pairs.integrate(present, false, &|at, geometry, operators, out| {
             let count = geometry.slave.len();
             if self.formulation.friction.is_some() {
                 let last = self.pairs.history(at, view, false);

@@ -50,6 +50,11 @@ impl Previous {
         }
     }
 
+    /// Whether the pair had no overlap.
+    pub fn is_empty(&self) -> bool {
+        self.d.is_empty()
+    }
+
     /// D and M of a pair of these shapes.
     pub fn operators(&self, slave: &FacetShape, master: &FacetShape) -> Operators<f64> {
         if self.d.is_empty() {

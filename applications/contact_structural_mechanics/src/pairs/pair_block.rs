@@ -17,7 +17,7 @@ use super::pair_request::PairRequest;
 use super::pairs_of_shapes::PairsOfShapes;
 use crate::interface::SlaveIndex;
 use crate::kratos::FirstIterateTangent;
-use crate::law::{ContactLaw, SlipMeasure};
+use crate::law::{Augmentation, ContactLaw, SlipMeasure};
 use crate::mortar::{Active, Operators};
 use crate::slave_nodes::SlaveStates;
 
@@ -36,6 +36,18 @@ impl PairBlock {
 
     fn history(&self, at: usize, view: &StepView<'_>) -> PairHistory {
         self.pairs.history(at, view, matches!(self.law.slip(), SlipMeasure::OfOperators(_)))
+    }
+
+    /// Whether a pair has no overlap any more, and still counts in the slip: the facets are where its nodes were at the start of the step.
+    fn is_left(&self, at: usize) -> bool {
+        let pair = &self.pairs.pairs[at];
+        !pair.overlapping && !pair.previous.is_empty() && self.counts_left_pairs()
+    }
+
+    /// Not where pairs augment, as in Kratos.
+    fn counts_left_pairs(&self) -> bool {
+        matches!(self.law.slip(), SlipMeasure::OfOperators(_))
+            && self.pairs.parameters.augmentation == Augmentation::Node
     }
 
     /// Adds to the tangent of a pair the effect of the rotation of its nodal normals: −∂b/∂n ∂n/∂x.
@@ -91,7 +103,7 @@ impl EntityBlock for PairBlock {
     }
 
     fn is_active(&self, at: usize, _view: &StepView<'_>) -> bool {
-        self.pairs.pairs[at].overlapping
+        self.pairs.pairs[at].overlapping || self.is_left(at)
     }
 
     fn local_systems(
@@ -104,7 +116,8 @@ impl EntityBlock for PairBlock {
         let Self { law, pairs } = self;
         let mut room = Operators::room();
         for (slot, at) in range.enumerate() {
-            if !pairs.pairs[at].overlapping {
+            let is_left = self.is_left(at);
+            if !pairs.pairs[at].overlapping && !is_left {
                 continue;
             }
             let geometry = pairs.geometry(at, view, &pairs.states);
@@ -119,6 +132,7 @@ impl EntityBlock for PairBlock {
                 nodes: &nodes,
                 multipliers: &multipliers,
                 history: &history,
+                is_left,
                 points: OnceCell::new(),
             };
             let (width, rows) = (out.size, self.equations());
@@ -127,14 +141,14 @@ impl EntityBlock for PairBlock {
             if request == Request::Both {
                 let lhs = &mut lhs[..rows * width];
                 let knows = FirstIterateTangent::of(view, geometry.space());
-                let found = || pairs.operators_of(at, &geometry);
+                let found = || system.present(&|| pairs.operators_of(at, &geometry));
                 system.tangent(&found, &|first| pairs.seeded(&geometry, first), knows, (lhs, width), rhs, &mut room);
                 let acts = nodes.iter().any(|node| node.state.is_active());
                 if acts && pairs.parameters.normal_variation.knows_nodes() {
                     self.add_turning(at, view, &system, (lhs, width), &mut room);
                 }
             } else {
-                system.residual(&pairs.operators_of(at, &geometry), rhs);
+                system.residual(&system.present(&|| pairs.operators_of(at, &geometry)), rhs);
             }
         }
         Ok(())
@@ -168,7 +182,7 @@ impl ContactBlock for PairBlock {
 
     fn integrate(&self, present: IntegrationState<'_>) -> Vec<Integral> {
         let IntegrationState { view, states, .. } = present;
-        self.pairs.integrate(present, &|at, geometry, operators, out| {
+        self.pairs.integrate(present, self.counts_left_pairs(), &|at, geometry, operators, out| {
             let system = PairSystem {
                 law: self.law.as_ref(),
                 geometry,
@@ -176,6 +190,7 @@ impl ContactBlock for PairBlock {
                 nodes: &self.pairs.slave_constants(at, states),
                 multipliers: &Nodal::new(geometry.slave.len(), |_| [0.0; 3]),
                 history: &self.history(at, view),
+                is_left: !out.overlapping,
                 points: OnceCell::new(),
             };
             system.inputs_and_trial(operators, &mut |j, inputs, trial| {

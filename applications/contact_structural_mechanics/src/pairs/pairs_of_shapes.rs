@@ -284,8 +284,9 @@ impl PairsOfShapes {
         });
     }
 
-    /// Gap and area of every pair, and the contribution of a law to those that overlap.
-    pub(super) fn integrate(&self, present: IntegrationState<'_>, add: Addition<'_>) -> Vec<Integral> {
+    /// Gap and area of every pair, and the contribution of a law to those that overlap. Where `left` holds, also to those that did
+    /// at the start of the step, with operators of zero.
+    pub(super) fn integrate(&self, present: IntegrationState<'_>, left: bool, add: Addition<'_>) -> Vec<Integral> {
         parallel::map(self.pairs.len(), PAIRS, |at| {
             let mut out = Integral::default();
             let Some((geometry, found)) = self.operators_now(at, present) else { return out };
@@ -298,6 +299,8 @@ impl PairsOfShapes {
                     out.gap[j] = gaps[j];
                 }
                 add(at, &geometry, &operators, &mut out);
+            } else if left && !self.pairs[at].previous.is_empty() {
+                add(at, &geometry, &Operators::zero(self.slave, self.master), &mut out);
             }
             out
         })

@@ -13,7 +13,9 @@ use crate::laws::penalty_by_node::PenaltyByNode;
 use crate::laws::penalty_frictional::PenaltyFrictional;
 use crate::laws::penalty_frictionless::PenaltyFrictionless;
 use crate::mortar::tests::{Noise, displaced, random_pair};
-use crate::mortar::{Choices, OperatorThreshold, Operators, PairGeometry, SegmentationSettings, operators, tangential};
+use crate::mortar::{
+    Choices, OperatorThreshold, Operators, Overlap, PairGeometry, SegmentationSettings, operators, tangential,
+};
 use zelus_core::geometry::{FacetShape, LINE_2, LINE_3, Nodal, QUADRILATERAL_4, TRIANGLE_3, TRIANGLE_6};
 use zelus_core::vector3::{dot, normalised};
 
@@ -66,7 +68,16 @@ fn residual(
     history: &PairHistory,
 ) -> Vec<f64> {
     let settings = &SegmentationSettings::default();
-    let system = PairSystem { law, geometry: pair, settings, nodes, multipliers, history, points: Default::default() };
+    let system = PairSystem {
+        law,
+        geometry: pair,
+        settings,
+        nodes,
+        multipliers,
+        history,
+        is_left: false,
+        points: Default::default(),
+    };
     let mut rhs = vec![0.0; system.size()];
     system.residual(&operators(pair, settings), &mut rhs);
     rhs
@@ -81,7 +92,16 @@ fn tangent(
     history: &PairHistory,
 ) -> (Vec<f64>, Vec<f64>) {
     let settings = &SegmentationSettings::default();
-    let system = PairSystem { law, geometry: pair, settings, nodes, multipliers, history, points: Default::default() };
+    let system = PairSystem {
+        law,
+        geometry: pair,
+        settings,
+        nodes,
+        multipliers,
+        history,
+        is_left: false,
+        points: Default::default(),
+    };
     let n = system.size();
     let (mut lhs, mut rhs) = (vec![0.0; n * n], vec![0.0; n]);
     let found = || operators(pair, settings);
@@ -217,6 +237,57 @@ fn tangents_match_differences() {
     ];
     for [slave, master] in shapes {
         laws.iter().for_each(|law| check_tangent(*law, slave, master));
+    }
+}
+
+/// A pair whose facets face each other no more, at nodes that stick, slide and are open: the tangent of its slip.
+#[test]
+fn tangents_of_pairs_that_nodes_have_left_match_differences() {
+    use NodeState::{Inactive, Slip, Stick};
+    let law = AlmFrictional { augmentation: Augmentation::Node, ..frictional(0.0) };
+    let settings = &SegmentationSettings::default();
+    for [slave, master] in [[&LINE_2, &LINE_2], [&TRIANGLE_3, &QUADRILATERAL_4], [&TRIANGLE_6, &TRIANGLE_6]] {
+        let pair = random_pair(slave, master, 1);
+        let mut noise = Noise::new(3);
+        let nodes = nodes(&pair, &mut noise, [Stick, Slip, Inactive]);
+        let multipliers = multipliers(&pair, &mut noise);
+        let history = history(&pair);
+        let with = |pair: &PairGeometry<f64>, lhs: &mut [f64], rhs: &mut [f64]| {
+            let system = PairSystem {
+                law: &law,
+                geometry: pair,
+                settings,
+                nodes: &nodes,
+                multipliers: &multipliers,
+                history: &history,
+                is_left: true,
+                points: Default::default(),
+            };
+            let found = || system.present(&|| Overlap::None);
+            if lhs.is_empty() {
+                return system.residual(&found(), rhs);
+            }
+            let (seeded, n) = (|first: usize| pair.seeded_from(first), rhs.len());
+            let room = &mut Operators::room();
+            system.tangent(&found, &seeded, FirstIterateTangent::Exact, (lhs, n), rhs, room);
+        };
+        let (unknowns, n) = (pair.unknowns(), pair.unknowns() + pair.space() * slave.nodes);
+        let (mut lhs, mut rhs) = (vec![0.0; n * n], vec![0.0; n]);
+        with(&pair, &mut lhs, &mut rhs);
+        let at = |column: usize, step: f64| {
+            let mut out = vec![0.0; n];
+            with(&displaced(&pair, column, step), &mut [], &mut out);
+            out
+        };
+        assert!(rhs[..unknowns].iter().all(|force| *force == 0.0), "no force acts there");
+        assert!(rhs[unknowns..].iter().any(|row| row.abs() > 1e-3), "{rhs:?}");
+        let (largest, h) = (lhs.iter().fold(1e-3, |a: f64, b| a.max(b.abs())), 1e-6);
+        for column in 0..unknowns {
+            for (row, (plus, minus)) in at(column, h).iter().zip(at(column, -h)).enumerate() {
+                let (slope, exact) = (-(plus - minus) / (2.0 * h), lhs[row * n + column]);
+                assert!((slope - exact).abs() < 1e-6 * largest, "row {row} column {column}: {slope} {exact}");
+            }
+        }
     }
 }
 
