@@ -46,17 +46,6 @@ pub(crate) fn clear_inactive(
     }
 }
 
-/// Which slave nodes of bodies that are in contact already begin a step in contact.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SetAtStart {
-    /// Nodes that ended the last step so, and nodes that the edge of contact will reach.
-    Kept,
-    /// All near nodes, as between bodies that are not in contact.
-    #[default]
-    Near,
-}
-
 /// Criterion of contact at step start.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ActivationCriterion<'a> {

@@ -14,7 +14,6 @@ mod active_set_update;
 mod sliding;
 
 pub(crate) use activation::ActivationCriterion;
-pub use activation::SetAtStart;
 pub(crate) use active_set_update::ActiveSetUpdate;
 pub(crate) use decision::Rules;
 pub(crate) use measured_tolerances::{length_tolerance, tolerances};

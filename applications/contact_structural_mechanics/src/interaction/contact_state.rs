@@ -6,7 +6,7 @@ use zelus_core::model::{ModelPart, bodies_of_nodes};
 use zelus_core::{Result, StateMapper};
 
 use crate::active_set::activation::{self, ActivationCriterion};
-use crate::active_set::{ActiveSetUpdate, FacetsOfPair, SetAtStart, SupportedNodes, corner_nodes, forced_points};
+use crate::active_set::{ActiveSetUpdate, FacetsOfPair, SupportedNodes, corner_nodes, forced_points};
 use crate::flags::{MASTER, SLAVE};
 use crate::friction;
 use crate::interface::{
@@ -17,7 +17,7 @@ use crate::pairing::{Pairing, PairingState, integrate, take_normals_of_masters};
 use crate::pairs::Pair;
 use crate::results::{InterfaceSurfaces, write_masters, write_states};
 use crate::safeguards::settle_all;
-use crate::search::{GapCheck, OpenSides, Renewal, assign_roles, farthest_motion};
+use crate::search::{GapCheck, OpenSides, Renewal, SetAtStart, assign_roles, farthest_motion};
 use crate::settings::{ContactSettings, Setup};
 use crate::slave_nodes::{SlaveStates, multiplier_columns, owners_name, write_status};
 use crate::tolerances::Tolerances;

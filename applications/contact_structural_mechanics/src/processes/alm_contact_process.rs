@@ -18,7 +18,6 @@ use super::interaction_process::InteractionProcess;
 use super::interface_settings::{
     check_analysis, check_positive, check_search, segmentation, warn_of_revolution, without_computing_part,
 };
-use crate::active_set::SetAtStart;
 use crate::adaptation::{AdaptationSettings, ExplicitPenalty, PenaltyRule, UzawaSettings};
 use crate::compatibility::{FormulationUse, Refusal, refusal};
 use crate::friction::FrictionSettings;
@@ -31,7 +30,7 @@ use crate::law::{
 use crate::laws::bonded::BONDED;
 use crate::mortar::OperatorThreshold;
 use crate::pairs::{Formulation, Multiplier, find_formulation};
-use crate::search::{GapCheck, SearchDistance, SearchSettings, WithinStep};
+use crate::search::{GapCheck, SearchDistance, SearchSettings, SetAtStart, WithinStep};
 use crate::settings::{ContactSettings, SurfaceSettings};
 use crate::solver::ContactSolverSettings;
 

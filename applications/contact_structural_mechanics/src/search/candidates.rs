@@ -27,6 +27,17 @@ pub enum GapCheck {
     NoCheck,
 }
 
+/// Which slave nodes of bodies that are in contact already begin a step in contact.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SetAtStart {
+    /// Nodes that ended the last step so, and nodes that the edge of contact will reach.
+    Kept,
+    /// All near nodes, as between bodies that are not in contact.
+    #[default]
+    Near,
+}
+
 /// Between which points of two facets the search radius is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]

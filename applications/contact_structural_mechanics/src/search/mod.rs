@@ -14,7 +14,7 @@ mod side_order;
 mod start;
 mod tree;
 
-pub use candidates::{Candidate, GapCheck, SearchDistance, SearchSettings, WithinStep, candidates};
+pub use candidates::{Candidate, GapCheck, SearchDistance, SearchSettings, SetAtStart, WithinStep, candidates};
 pub use direct_check::touching_nodes;
 pub use inside::inside;
 pub(crate) use meetings::FACING;

@@ -5,14 +5,13 @@ use std::sync::Arc;
 
 use zelus_core::parameters::Interval;
 
-use crate::active_set::SetAtStart;
 use crate::adaptation::{AdaptationSettings, ExplicitPenalty, UzawaSettings};
 use crate::friction::FrictionSettings;
 use crate::interface::{GivenParameters, NodalNormals};
 use crate::law::{Augmentation, CohesiveLaw, Nitsche, NormalVariation, OverclosureLaw, Rubbing, SurfaceLaw};
 use crate::mortar::{OperatorThreshold, SegmentationSettings};
 use crate::pairs::Formulation;
-use crate::search::SearchSettings;
+use crate::search::{SearchSettings, SetAtStart};
 use crate::solver::ContactSolverSettings;
 
 /// Laws of a deck that give the tractions of slave nodes by their gap and slip: bonds, friction by direction and elastic slip.
