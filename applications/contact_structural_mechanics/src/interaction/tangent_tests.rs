@@ -324,7 +324,9 @@ impl Contact {
         for block in &mut self.blocks {
             let integrals =
                 block.integrate(IntegrationState { view: &self.part.view(), states: &self.states, own: &|_| true });
-            block.pairs_mut().iter_mut().zip(integrals).for_each(|(pair, integral)| pair.area = integral.area);
+            block.pairs_mut().iter_mut().zip(integrals).for_each(|(pair, integral)| {
+                (pair.area, pair.overlapping) = (integral.area, integral.overlapping);
+            });
         }
         // Areas stay those of this state: they weigh slips in the direction of sliding only.
         let areas = self.sums(|integral, j| [integral.area[j], 0.0, 0.0]);
