@@ -395,8 +395,9 @@ impl ContactState {
         self.integrate(part);
         let settings = &self.setup.settings;
         let ratio = part.info.delta_time / self.last_length;
-        // Few nodes may be too little to restrain a body that rocks.
-        let keeps = settings.set_at_start == SetAtStart::Kept && !self.repeated;
+        // Few nodes may be too little to restrain a body that rocks; nodes of bodies that bounce do not stay in contact.
+        let fails_or_moves = self.repeated || self.setup.parameters.dynamic;
+        let keeps = settings.set_at_start == SetAtStart::Kept && !fails_or_moves;
         let in_contact = if keeps { self.pairing.of_bodies_in_contact(part, &self.states) } else { Vec::new() };
         let start = match settings.search.check {
             GapCheck::DirectCheck => ActivationCriterion::Touching(&self.pairing.touching),
