@@ -397,7 +397,8 @@ impl ContactState {
         let ratio = part.info.delta_time / self.last_length;
         // Few nodes may be too little to restrain a body that rocks; nodes of bodies that bounce do not stay in contact.
         let fails_or_moves = self.repeated || self.setup.parameters.dynamic;
-        let keeps = settings.set_at_start == SetAtStart::Kept && !fails_or_moves;
+        let by_gaps = settings.search.check == GapCheck::CheckMapping && !settings.simple_search;
+        let keeps = by_gaps && settings.set_at_start == SetAtStart::Kept && !fails_or_moves;
         let in_contact = if keeps { self.pairing.of_bodies_in_contact(part, &self.states) } else { Vec::new() };
         let start = match settings.search.check {
             GapCheck::DirectCheck => ActivationCriterion::Touching(&self.pairing.touching),

@@ -75,15 +75,9 @@ pub(crate) fn integrate(part: &ModelPart, pairing: &mut Pairing, states: &mut Sl
             let overlapping = overlaps.next().is_some_and(|overlap| overlap.overlapping);
             let pair = &mut block.pairs_mut()[at];
             (pair.overlapping, pair.area) = (overlapping, integral.area);
-            if !overlapping {
-                // Facets that nodes have left in this step count in their slip.
-                for (local, &node) in block.slaves(at).iter().enumerate() {
-                    sums[node].slip = add(sums[node].slip, integral.slip[local]);
-                }
-                continue;
-            }
+            // Of facets that nodes have left in this step the slip alone is not zero.
             for (local, &node) in block.slaves(at).iter().enumerate() {
-                states[node].kinematics.pairs += 1;
+                states[node].kinematics.pairs += u32::from(overlapping);
                 sums[node].add(integral, local);
             }
         }

@@ -13,9 +13,7 @@ use crate::laws::penalty_by_node::PenaltyByNode;
 use crate::laws::penalty_frictional::PenaltyFrictional;
 use crate::laws::penalty_frictionless::PenaltyFrictionless;
 use crate::mortar::tests::{Noise, displaced, random_pair};
-use crate::mortar::{
-    Choices, OperatorThreshold, Operators, Overlap, PairGeometry, SegmentationSettings, operators, tangential,
-};
+use crate::mortar::{Choices, OperatorThreshold, Operators, PairGeometry, SegmentationSettings, operators, tangential};
 use zelus_core::geometry::{FacetShape, LINE_2, LINE_3, Nodal, QUADRILATERAL_4, TRIANGLE_3, TRIANGLE_6};
 use zelus_core::vector3::{dot, normalised};
 
@@ -59,6 +57,40 @@ const MIXES: [[NodeState; 3]; 5] = {
     [[Inactive; 3], [Slip; 3], [Stick; 3], [Slip, Inactive, Stick], [Stick, Slip, Inactive]]
 };
 
+/// A pair under a law, whose facets face each other.
+fn system<'a>(
+    law: &'a dyn ContactLaw,
+    geometry: &'a PairGeometry<f64>,
+    settings: &'a SegmentationSettings,
+    nodes: &'a [SlaveNode],
+    multipliers: &'a [[f64; 3]],
+    history: &'a PairHistory,
+) -> PairSystem<'a> {
+    PairSystem { law, geometry, settings, nodes, multipliers, history, is_left: false, points: Default::default() }
+}
+
+/// Its right-hand side.
+fn residual_of(system: &PairSystem<'_>) -> Vec<f64> {
+    let mut rhs = vec![0.0; system.size()];
+    system.residual(&system.present(&|| operators(system.geometry, system.settings)), &mut rhs);
+    rhs
+}
+
+/// Its tangent and right-hand side.
+fn tangent_of(system: &PairSystem<'_>) -> (Vec<f64>, Vec<f64>) {
+    let n = system.size();
+    let (mut lhs, mut rhs) = (vec![0.0; n * n], vec![0.0; n]);
+    system.tangent(
+        &|| system.present(&|| operators(system.geometry, system.settings)),
+        &|first| system.geometry.seeded_from(first),
+        FirstIterateTangent::Exact,
+        (&mut lhs, n),
+        &mut rhs,
+        &mut Operators::room(),
+    );
+    (lhs, rhs)
+}
+
 /// The right-hand side of a pair under a law.
 fn residual(
     law: &dyn ContactLaw,
@@ -67,20 +99,7 @@ fn residual(
     multipliers: &[[f64; 3]],
     history: &PairHistory,
 ) -> Vec<f64> {
-    let settings = &SegmentationSettings::default();
-    let system = PairSystem {
-        law,
-        geometry: pair,
-        settings,
-        nodes,
-        multipliers,
-        history,
-        is_left: false,
-        points: Default::default(),
-    };
-    let mut rhs = vec![0.0; system.size()];
-    system.residual(&operators(pair, settings), &mut rhs);
-    rhs
+    residual_of(&system(law, pair, &SegmentationSettings::default(), nodes, multipliers, history))
 }
 
 /// Tangent and right-hand side of a pair under a law.
@@ -91,29 +110,18 @@ fn tangent(
     multipliers: &[[f64; 3]],
     history: &PairHistory,
 ) -> (Vec<f64>, Vec<f64>) {
-    let settings = &SegmentationSettings::default();
-    let system = PairSystem {
-        law,
-        geometry: pair,
-        settings,
-        nodes,
-        multipliers,
-        history,
-        is_left: false,
-        points: Default::default(),
-    };
-    let n = system.size();
-    let (mut lhs, mut rhs) = (vec![0.0; n * n], vec![0.0; n]);
-    let found = || operators(pair, settings);
-    system.tangent(
-        &found,
-        &|first| pair.seeded_from(first),
-        FirstIterateTangent::Exact,
-        (&mut lhs, n),
-        &mut rhs,
-        &mut Operators::room(),
-    );
-    (lhs, rhs)
+    tangent_of(&system(law, pair, &SegmentationSettings::default(), nodes, multipliers, history))
+}
+
+/// Compares the first columns of a tangent with differences of the right-hand side, which `at` gives with an unknown moved by a step.
+fn check_columns(lhs: &[f64], rows: usize, columns: usize, at: impl Fn(usize, f64) -> Vec<f64>, what: &str) {
+    let (largest, h) = (lhs.iter().fold(1e-3, |a: f64, b| a.max(b.abs())), 1e-6);
+    for column in 0..columns {
+        for (row, (plus, minus)) in at(column, h).iter().zip(at(column, -h)).enumerate() {
+            let (slope, exact) = (-(plus - minus) / (2.0 * h), lhs[row * rows + column]);
+            assert!((slope - exact).abs() < 1e-6 * largest, "{what} row {row} column {column}: {slope} {exact}");
+        }
+    }
 }
 
 fn check_tangent(law: &dyn ContactLaw, slave: &'static FacetShape, master: &'static FacetShape) {
@@ -148,17 +156,7 @@ fn check_tangent(law: &dyn ContactLaw, slave: &'static FacetShape, master: &'sta
                 }
                 residual(law, &moved, &nodes, &lambda, &history)
             };
-            let largest = lhs.iter().fold(1e-3, |a: f64, b| a.max(b.abs()));
-            for column in 0..n {
-                let h = 1e-6;
-                for (row, (plus, minus)) in at(column, h).iter().zip(at(column, -h)).enumerate() {
-                    let (slope, exact) = (-(plus - minus) / (2.0 * h), lhs[row * n + column]);
-                    assert!(
-                        (slope - exact).abs() < 1e-6 * largest,
-                        "{shapes:?} seed {seed} {states:?} row {row} column {column}: {slope} {exact}"
-                    );
-                }
-            }
+            check_columns(&lhs, n, n, at, &format!("{shapes:?} seed {seed} {states:?}"));
             // Forces of both sides balance.
             for c in 0..pair.space() {
                 let total: f64 = plain[..unknowns].iter().skip(c).step_by(pair.space()).sum();
@@ -252,42 +250,17 @@ fn tangents_of_pairs_that_nodes_have_left_match_differences() {
         let nodes = nodes(&pair, &mut noise, [Stick, Slip, Inactive]);
         let multipliers = multipliers(&pair, &mut noise);
         let history = history(&pair);
-        let with = |pair: &PairGeometry<f64>, lhs: &mut [f64], rhs: &mut [f64]| {
-            let system = PairSystem {
-                law: &law,
-                geometry: pair,
-                settings,
-                nodes: &nodes,
-                multipliers: &multipliers,
-                history: &history,
-                is_left: true,
-                points: Default::default(),
-            };
-            let found = || system.present(&|| Overlap::None);
-            if lhs.is_empty() {
-                return system.residual(&found(), rhs);
-            }
-            let (seeded, n) = (|first: usize| pair.seeded_from(first), rhs.len());
-            let room = &mut Operators::room();
-            system.tangent(&found, &seeded, FirstIterateTangent::Exact, (lhs, n), rhs, room);
-        };
-        let (unknowns, n) = (pair.unknowns(), pair.unknowns() + pair.space() * slave.nodes);
-        let (mut lhs, mut rhs) = (vec![0.0; n * n], vec![0.0; n]);
-        with(&pair, &mut lhs, &mut rhs);
-        let at = |column: usize, step: f64| {
-            let mut out = vec![0.0; n];
-            with(&displaced(&pair, column, step), &mut [], &mut out);
-            out
-        };
+        let start = system(&law, &pair, settings, &nodes, &multipliers, &history);
+        let (lhs, rhs) = tangent_of(&PairSystem { is_left: true, ..start });
+        let unknowns = pair.unknowns();
         assert!(rhs[..unknowns].iter().all(|force| *force == 0.0), "no force acts there");
         assert!(rhs[unknowns..].iter().any(|row| row.abs() > 1e-3), "{rhs:?}");
-        let (largest, h) = (lhs.iter().fold(1e-3, |a: f64, b| a.max(b.abs())), 1e-6);
-        for column in 0..unknowns {
-            for (row, (plus, minus)) in at(column, h).iter().zip(at(column, -h)).enumerate() {
-                let (slope, exact) = (-(plus - minus) / (2.0 * h), lhs[row * n + column]);
-                assert!((slope - exact).abs() < 1e-6 * largest, "row {row} column {column}: {slope} {exact}");
-            }
-        }
+        let at = |column: usize, step: f64| {
+            let moved = displaced(&pair, column, step);
+            let system = system(&law, &moved, settings, &nodes, &multipliers, &history);
+            residual_of(&PairSystem { is_left: true, ..system })
+        };
+        check_columns(&lhs, rhs.len(), unknowns, at, &format!("{:?}", [slave, master]));
     }
 }
 
